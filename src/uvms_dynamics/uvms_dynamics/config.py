@@ -1,0 +1,48 @@
+"""One base for every configuration: each parameter is spelled once, with unit, bound and meaning.
+
+A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS parameters all derive
+from its fields, so that a gain has one name, one default and one description.
+"""
+
+from pydantic import BaseModel, ConfigDict, ValidationError
+
+from uvms_dynamics.errors import ConfigError, UvmsError
+
+
+class Config(BaseModel):
+    """Base of all configurations: frozen, and unknown names are errors."""
+
+    model_config = ConfigDict(extra="forbid", frozen=True, validate_default=True)
+
+
+def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
+    """One line per fault: the field, the value, and what is allowed."""
+    return "\n".join(_explain_one(item, what, model) for item in error.errors())
+
+
+def _explain_one(item, what: str, model: type[BaseModel]) -> str:
+    path = ".".join(str(part) for part in item["loc"]) or "(top)"
+    line = f"{what}: {path}: {item['msg']}"
+    if item["type"] == "extra_forbidden":
+        return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
+    if item["type"] == "missing":
+        return line
+    return f"{line} (got {item['input']!r})"
+
+
+def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
+    for part in path:
+        field = model.model_fields.get(str(part))
+        inner = getattr(field, "annotation", None)
+        if not (isinstance(inner, type) and issubclass(inner, BaseModel)):
+            continue
+        model = inner
+    return sorted(model.model_fields)
+
+
+def validated(model: type[BaseModel], data, what: str, error: type[UvmsError] = ConfigError):
+    """`model` made from `data`, or one clear error that lists every fault."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as fault:
+        raise error(explain(fault, what, model)) from fault

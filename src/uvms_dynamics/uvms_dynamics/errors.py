@@ -1,0 +1,17 @@
+"""The exception tree that every package of the project hangs its own branch on."""
+
+
+class UvmsError(Exception):
+    """Root of every error that this project raises on purpose; its text is meant for the user."""
+
+
+class VehicleFileError(UvmsError):
+    """A vehicle file is missing, unreadable or names a value that is not allowed."""
+
+
+class ConfigError(UvmsError):
+    """A configuration value is unknown or outside its bounds."""
+
+
+class SignalError(UvmsError):
+    """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
