@@ -107,53 +107,59 @@ class TickGate:
         inputs: the node's inputs by name.
         trigger: the input whose stamps are the ticks.
         lockstep: wait for all inputs of the stamp (True), or for the trigger alone (False).
+        in_loop: the plant waits for this node's answer, so a newer trigger means that it gave up
+            the older tick by time-out. A node beside the loop keeps its open ticks instead.
     """
 
-    def __init__(self, inputs: Mapping[str, Input], trigger: str, lockstep: bool) -> None:
+    def __init__(
+        self, inputs: Mapping[str, Input], trigger: str, lockstep: bool, in_loop: bool = True
+    ) -> None:
         self._inputs = dict(inputs)
         self._trigger = trigger
         self._lockstep = lockstep
-        self._pending: deque[int] = deque()
+        self._in_loop = in_loop
+        self._open: deque[int] = deque()
         self._broken = True  # no tick before: its feedback is not waited for
-        self.last = -1
+        self._last = -1
         self.abandoned = 0
         self.late = 0
 
-    def push(self, name: str, stamp: int, value: Any) -> Tick | None:
-        """Take an input; returns the tick that it completes, if any."""
+    def push(self, name: str, stamp: int, value: Any) -> list[Tick]:
+        """Take an input; returns the ticks that it completes, in order."""
         if name == self._trigger:
-            if stamp <= self.last or (self._pending and stamp <= self._pending[-1]):
+            if stamp <= self._last:
                 self.late += 1
-                return None
-            # A newer trigger while an older tick is open: the loop broke there and was taken up
-            # again by time-out, so the feedback of the older tick will not come.
-            self._broken = self._broken or bool(self._pending)
-            self._pending.append(stamp)
+                return []
+            self._last = stamp
+            self._abandon()
+            self._open.append(stamp)
         self._inputs[name].push(stamp, value)
         return self._release()
 
     def waiting_for(self) -> tuple[str, ...]:
         """Names of the inputs that the oldest open tick still lacks."""
-        if not self._pending:
+        if not self._open:
             return (self._trigger,)
-        stamp = self._pending[0]
+        stamp = self._open[0]
         return tuple(name for name, item in self._inputs.items() if not self._has(item, stamp))
 
-    def _release(self) -> Tick | None:
-        # The newest complete tick; the plant moved past older ones, so they are of no use any more.
-        for stamp in reversed(self._pending):
-            if not self._lockstep or all(self._has(i, stamp) for i in self._inputs.values()):
-                return self._fire(stamp)
-        return None
+    def _abandon(self) -> None:
+        if self._open and self._in_loop:
+            self._broken = True
+            self.abandoned += len(self._open)
+            self._open.clear()
 
     def _has(self, item: Input, stamp: int) -> bool:
         return item.complete(stamp) or (self._broken and isinstance(item, Previous))
 
-    def _fire(self, stamp: int) -> Tick:
-        while self._pending[0] < stamp:
-            self._pending.popleft()
-            self.abandoned += 1
-        self._pending.popleft()
-        self.last = stamp
-        self._broken = False
-        return Tick(stamp, {name: item.take(stamp) for name, item in self._inputs.items()})
+    def _release(self) -> list[Tick]:
+        released = []
+        while self._open and self._complete(self._open[0]):
+            stamp = self._open.popleft()
+            self._broken = False
+            inputs = {name: item.take(stamp) for name, item in self._inputs.items()}
+            released.append(Tick(stamp, inputs))
+        return released
+
+    def _complete(self, stamp: int) -> bool:
+        return not self._lockstep or all(self._has(i, stamp) for i in self._inputs.values())
