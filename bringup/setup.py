@@ -1,0 +1,42 @@
+from glob import glob
+
+from setuptools import find_packages, setup
+
+PACKAGE = "uvms_bringup"
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="Scenarios, bringup, in-process simulation, recording, replay and reports.",
+    maintainer="UVMS maintainers",
+    maintainer_email="maintainers@uvms.example",
+    license="Apache-2.0",
+    python_requires=">=3.10",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed", "**/*.html", "**/*.css", "**/*.js"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+        (f"share/{PACKAGE}/config", sorted(glob("config/*.yaml"))),
+        (f"share/{PACKAGE}/launch", sorted(glob("launch/*.*"))),
+    ],
+    install_requires=[
+        "matplotlib>=3.8",
+        "mcap>=1.2",
+        "mcap-ros2-support>=0.5",
+        "numpy>=1.26",
+        "pydantic>=2.5",
+        "PyYAML>=6",
+        "rich>=13",
+        "uvms_control",
+        "uvms_dynamics",
+        "uvms_observer",
+        "uvms_planner",
+    ],
+    zip_safe=False,
+    entry_points={
+        "console_scripts": [
+            "uvms = uvms_bringup.cli:main",
+        ]
+    },
+)

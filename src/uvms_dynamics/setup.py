@@ -1,0 +1,32 @@
+from setuptools import find_packages, setup
+
+PACKAGE = "uvms_dynamics"
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="Geometry, hydrodynamics, sensors and the simulated plant of an underwater vehicle-manipulator system.",
+    maintainer="UVMS maintainers",
+    maintainer_email="maintainers@uvms.example",
+    license="Apache-2.0",
+    python_requires=">=3.10",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+    ],
+    install_requires=[
+        "numba>=0.61",
+        "numpy>=1.26",
+        "pydantic>=2.5",
+        "PyYAML>=6",
+        "scipy>=1.11",
+    ],
+    zip_safe=False,
+    entry_points={
+        "console_scripts": [
+            "plant = uvms_dynamics.nodes.plant:main",
+        ]
+    },
+)

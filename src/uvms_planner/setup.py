@@ -1,0 +1,31 @@
+from setuptools import find_packages, setup
+
+PACKAGE = "uvms_planner"
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="Motion planner that moves vehicle and arm together with the least self-disturbance.",
+    maintainer="UVMS maintainers",
+    maintainer_email="maintainers@uvms.example",
+    license="Apache-2.0",
+    python_requires=">=3.10",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+    ],
+    install_requires=[
+        "numba>=0.61",
+        "numpy>=1.26",
+        "pydantic>=2.5",
+        "uvms_dynamics",
+    ],
+    zip_safe=False,
+    entry_points={
+        "console_scripts": [
+            "motion_planner = uvms_planner.nodes.motion_planner:main",
+        ]
+    },
+)
