@@ -1,0 +1,24 @@
+"""What a node says about itself on /diagnostics."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+OK, WARN, ERROR, STALE = range(4)
+
+
+@dataclass(frozen=True)
+class Status:
+    """State of one node at a stamp; values are numbers or texts by key (`step_ms`, ...)."""
+
+    stamp: int
+    name: str
+    level: int = OK
+    message: str = "ok"
+    values: Mapping[str, float | int | bool | str] = field(default_factory=dict)
+
+    def number(self, key: str) -> float:
+        """A value as a number; NaN if the status has no such number."""
+        try:
+            return float(self.values[key])
+        except (KeyError, ValueError):
+            return float("nan")
