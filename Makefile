@@ -1,0 +1,45 @@
+# Everything starts here: `make run` and `make test` set up what they need first.
+# PYTHON=python3.12 chooses the interpreter; ARGS="..." goes on to the program.
+
+SCENARIO ?= manipulation
+BIN := .venv/bin
+SETUP := $(or $(PYTHON),python3) -I -S tools/environment
+CODE := src bringup tests tools $(wildcard benchmarks examples)
+
+# A sourced ROS workspace or another environment must not leak into this one.
+unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH
+unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+
+.DEFAULT_GOAL := help
+.PHONY: help setup setup-run run test bench lint format clean
+
+help: ## show this list
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+
+run: setup-run ## set up, then run the manipulation (other scenario: SCENARIO=hover; options: ARGS="--seed 3")
+	@$(BIN)/uvms run $(SCENARIO) $(ARGS)
+
+test: setup ## set up, then run all tests (some of them: ARGS="tests/uvms_planner -k cost")
+	@$(BIN)/python -m pytest $(ARGS)
+
+bench: setup ## set up, then measure speed and quality, one JSON object a line
+	@$(BIN)/python benchmarks/run.py $(ARGS)
+
+lint: setup ## check style and types
+	@$(BIN)/ruff check $(CODE)
+	@$(BIN)/ruff format --check $(CODE)
+	@$(BIN)/mypy
+
+format: setup ## put the sources into the project's style
+	@$(BIN)/ruff check --fix $(CODE)
+	@$(BIN)/ruff format $(CODE)
+
+setup: ## set up .venv with the tools for development; does nothing where nothing has changed
+	@$(SETUP) --development
+
+setup-run:
+	@$(SETUP)
+
+clean: ## remove everything that was made: .venv, runs, caches
+	rm -rf .venv runs build install log .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage
+	find $(CODE) \( -name __pycache__ -o -name '*.egg-info' \) -prune -exec rm -rf {} +
