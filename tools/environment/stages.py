@@ -10,7 +10,6 @@ from commands import environment
 from machine import SetupError
 
 INTERFACES = {"uvms_msgs": "src/uvms_msgs", "tf2_msgs": "tools/tf2_msgs"}
-# Everything else can change without anything being installed again.
 PACKAGING = ("setup.py", "setup.cfg", "package.xml")
 
 
@@ -41,11 +40,12 @@ class PythonEnvironment:
     name, title = "environment", "virtual environment in .venv"
 
     def key(self, context, explicit):
-        """A whole environment of any supported Python will do, unless the user names a Python."""
+        """An environment of any supported Python will do, unless the user names a Python."""
         python = os.path.realpath(sys.executable) if explicit else _interpreter(context)
         return stamps.digest(context.root, [], context.root, python)
 
     def run(self, stage, context):
+        """Make it afresh, but never out of something that is not ours."""
         if context.prefix.exists() and not context.stamps().present:
             raise SetupError("%s was not made by this set-up: move it away." % context.prefix)
         shutil.rmtree(str(context.prefix), ignore_errors=True)
@@ -67,9 +67,11 @@ class Requirements:
         self._lists = ["requirements/%s.txt" % item for item in lists]
 
     def key(self, context, explicit):
+        """The lists and the constraints."""
         return stamps.digest(context.root, [*self._lists, "requirements/constraints.txt"])
 
     def run(self, stage, context):
+        """Install the lists within the constraints."""
         command = [context.python, "-m", "pip", "install", "--no-input", "--progress-bar=off"]
         command += ["--disable-pip-version-check", "--prefer-binary"]
         for item in self._lists:
@@ -84,10 +86,12 @@ class Interfaces:
     name, title = "interfaces", "ROS messages and actions"
 
     def key(self, context, explicit):
+        """The interface packages, and the ROS that they are built against."""
         inputs = [*INTERFACES.values(), "requirements/ros.txt"]
         return stamps.digest(context.root, inputs)
 
     def run(self, stage, context):
+        """Build each package in its turn."""
         for name, source in INTERFACES.items():
             self._build(stage, context, name, context.root / source)
 
@@ -116,6 +120,7 @@ class EditablePackages:
     name, title = "packages", "the project's packages (editable)"
 
     def key(self, context, explicit):
+        """What describes the packages; their code may change freely."""
         packages = context.packages().values()
         inputs = [str((one / file).relative_to(context.root)) for one in packages
                   for file in PACKAGING]  # fmt: skip
@@ -124,6 +129,7 @@ class EditablePackages:
         return stamps.digest(context.root, inputs, *there)
 
     def run(self, stage, context):
+        """Install them in place, then add what makes the environment an ament prefix."""
         packages = context.packages()
         command = [context.python, "-m", "pip", "install", "--no-deps", "--no-index"]
         command += ["--no-build-isolation", "--use-pep517", "--disable-pip-version-check"]

@@ -1,4 +1,4 @@
-"""Which stages of the set-up are done, and for which inputs: a small JSON file in the environment."""
+"""Which stages of the set-up are done, and for which inputs: a JSON file in the environment."""
 
 import hashlib
 import json
