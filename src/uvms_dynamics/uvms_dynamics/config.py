@@ -4,9 +4,13 @@ A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS pa
 from its fields, so that a gain has one name, one default and one description.
 """
 
+from typing import get_args
+
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from uvms_dynamics.errors import ConfigError, UvmsError
+
+_LONGEST_ECHO = 120  # characters of a wrong value that are worth repeating in an error
 
 
 class Config(BaseModel):
@@ -27,17 +31,23 @@ def _explain_one(item, what: str, model: type[BaseModel]) -> str:
         return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
     if item["type"] == "missing":
         return line
-    return f"{line} (got {item['input']!r})"
+    got = repr(item["input"])
+    return f"{line} (got {got})" if len(got) <= _LONGEST_ECHO else line
 
 
 def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
     for part in path:
         field = model.model_fields.get(str(part))
-        inner = getattr(field, "annotation", None)
-        if not (isinstance(inner, type) and issubclass(inner, BaseModel)):
-            continue
-        model = inner
+        model = _inner_model(getattr(field, "annotation", None)) or model
     return sorted(model.model_fields)
+
+
+def _inner_model(annotation) -> type[BaseModel] | None:
+    """The model in an annotation such as `M`, `M | None` or `tuple[M, ...]`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    inner = (_inner_model(argument) for argument in get_args(annotation))
+    return next(filter(None, inner), None)
 
 
 def validated(model: type[BaseModel], data, what: str, error: type[UvmsError] = ConfigError):

@@ -1,0 +1,148 @@
+"""The arm: a serial chain of revolute joints in standard Denavit-Hartenberg form."""
+
+from typing import Annotated
+
+from pydantic import Field, model_validator
+
+from uvms_dynamics.vehicle.parts import (
+    AddedMass,
+    Inertia,
+    Part,
+    UnitVector,
+    Vector3,
+    unique_names,
+    word,
+)
+
+
+class Mounting(Part):
+    """Pose of one frame in another."""
+
+    position_m: Vector3 = Field(description="of the frame's origin, m")
+    rpy_deg: Vector3 = Field(default=(0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees")
+
+
+class Joint(Part):
+    """A revolute joint: Rz(theta + offset) Tz(d) Tx(a) Rx(alpha), limits and friction."""
+
+    name: str = Field(min_length=1, description="name in joint_states and joint_command")
+    a_m: float = Field(description="DH link length, m")
+    alpha_deg: float = Field(description="DH twist, degrees")
+    d_m: float = Field(description="DH offset along the joint axis, m")
+    offset_deg: float = Field(default=0.0, description="DH angle at joint angle zero, degrees")
+    lower_deg: float = Field(description="lower limit, degrees")
+    upper_deg: float = Field(description="upper limit, degrees")
+    rate_limit_deg_s: float = Field(gt=0.0, description="greatest rate, degrees/s")
+    acceleration_limit_deg_s2: float = Field(gt=0.0, description="greatest acceleration, deg/s^2")
+    effort_limit_nm: float = Field(gt=0.0, description="greatest torque, N m")
+    rotor_inertia_kg_m2: float = Field(
+        gt=0.0, description="of motor and gear, reflected to the joint, kg m^2"
+    )
+    viscous_friction_nm_s: float = Field(ge=0.0, description="N m per rad/s")
+    coulomb_friction_nm: float = Field(ge=0.0, description="sliding friction, N m")
+    coulomb_width_deg_s: float = Field(
+        gt=0.0, description="rate w of the regularised friction tanh(rate / w), degrees/s"
+    )
+    stop_stiffness_nm_rad: float = Field(ge=0.0, description="of the end stops, N m per rad")
+    stop_dissipation_s_rad: float = Field(
+        ge=0.0, description="Hunt-Crossley dissipation of the end stops, s/rad"
+    )
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Joint":
+        if not self.lower_deg < self.upper_deg:
+            raise ValueError(
+                f"lower_deg = {self.lower_deg:g} must be below upper_deg = {self.upper_deg:g}"
+            )
+        return self
+
+
+class DragCylinder(Part):
+    """A circular cylinder cut into strips for cross-flow drag."""
+
+    center_m: Vector3 = Field(description="its middle, link frame, m")
+    axis: UnitVector = Field(description="its axis, link frame")
+    radius_m: float = Field(gt=0.0, description="m")
+    length_m: float = Field(gt=0.0, description="m")
+    stations: int = Field(
+        default=3, ge=1, le=50, description="Gauss-Legendre stations along the axis"
+    )
+
+
+class Cylinder(DragCylinder):
+    """The shape behind every field of a link that says `cylinder`."""
+
+    axial_added_mass_fraction: float = Field(
+        default=0.1, ge=0.0, description="added mass along the axis as a part of the link's mass"
+    )
+
+
+class Link(Part):
+    """The body that joint i moves, in its distal DH frame i."""
+
+    name: str = Field(min_length=1, description="name of the link")
+    cylinder: Cylinder | None = Field(
+        default=None, description="shape behind every field that says `cylinder`"
+    )
+    mass_kg: float = Field(gt=0.0, description="dry mass, kg")
+    volume_m3: Annotated[float, word("cylinder")] = Field(
+        gt=0.0, description="displaced volume, m^3, or `cylinder`"
+    )
+    cg_m: Annotated[Vector3, word("cylinder")] = Field(description="m, or `cylinder`: its middle")
+    cb_m: Annotated[Vector3, word("cylinder")] = Field(description="m, or `cylinder`: its middle")
+    inertia_kg_m2: Annotated[Inertia, word("cylinder")] = Field(
+        description="about the CG, link axes, kg m^2: 3 diagonal values, 3 rows or `cylinder`"
+    )
+    added_mass: Annotated[AddedMass, word("cylinder")] = Field(
+        description="about the link frame's origin, SI: 6 diagonal values, 6 rows or `cylinder`"
+    )
+    drag: Annotated[tuple[DragCylinder, ...], word("cylinder")] = Field(
+        description="cylinders that feel cross-flow drag, or `cylinder`"
+    )
+
+
+class DragCoefficient(Part):
+    """Cross-flow drag coefficient, linear in the logarithm of the Reynolds number."""
+
+    reynolds: tuple[float, ...] = Field(min_length=2, description="increasing, > 0")
+    cd: tuple[float, ...] = Field(min_length=2, description="coefficient at each, >= 0")
+
+    @model_validator(mode="after")
+    def _is_table(self) -> "DragCoefficient":
+        if len(self.reynolds) != len(self.cd):
+            raise ValueError(
+                f"reynolds has {len(self.reynolds)} values, cd has {len(self.cd)}; must be as many"
+            )
+        pairs = zip(self.reynolds, self.reynolds[1:], strict=False)
+        if self.reynolds[0] <= 0.0 or not all(low < high for low, high in pairs):
+            raise ValueError("reynolds must be > 0 and increasing")
+        if min(self.cd) < 0.0:
+            raise ValueError("every cd must be >= 0")
+        return self
+
+
+class Arm(Part):
+    """Arm: mounting, joints, the link that each joint moves, and the tool on the last link."""
+
+    base: Mounting = Field(description="frame of joint 1 in the body frame")
+    joints: tuple[Joint, ...] = Field(min_length=1, description="from the base to the tool")
+    links: tuple[Link, ...] = Field(min_length=1, description="link i is moved by joint i")
+    tool: Mounting = Field(description="tool in the last link's frame")
+    stowed_deg: tuple[float, ...] = Field(description="joint angles with the arm stowed, degrees")
+    drag_coefficient: DragCoefficient = Field(description="of all drag cylinders")
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Arm":
+        count = len(self.joints)
+        for name, values in (("links", self.links), ("stowed_deg", self.stowed_deg)):
+            if len(values) != count:
+                raise ValueError(f"{name} has {len(values)} entries for {count} joints")
+        unique_names(self.joints, "joint")
+        unique_names(self.links, "link")
+        for joint, angle in zip(self.joints, self.stowed_deg, strict=True):
+            if not joint.lower_deg <= angle <= joint.upper_deg:
+                raise ValueError(
+                    f"stowed_deg {angle:g} of joint {joint.name} is outside its limits"
+                    f" {joint.lower_deg:g} to {joint.upper_deg:g}"
+                )
+        return self

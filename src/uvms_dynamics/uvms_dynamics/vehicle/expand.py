@@ -1,0 +1,85 @@
+"""Put values in the place of the words `neutral`, `trim`, `spheroid` and `cylinder`."""
+
+from typing import Any
+
+import numpy as np
+
+from uvms_dynamics.signals import Array
+from uvms_dynamics.vehicle import shapes
+from uvms_dynamics.vehicle.arm import Arm, Link
+from uvms_dynamics.vehicle.environment import Environment
+from uvms_dynamics.vehicle.frames import arm_frames
+from uvms_dynamics.vehicle.hull import Hull
+from uvms_dynamics.vehicle.vehicle import Vehicle
+
+LINK_WORDS = ("volume_m3", "cg_m", "cb_m", "inertia_kg_m2", "added_mass", "drag")
+HULL_WORDS = ("volume_m3", "inertia_kg_m2", "added_mass")
+
+
+class MissingShapeError(Exception):
+    """A word stands for a shape that the section does not give; the text names the field."""
+
+
+def expand(vehicle: Vehicle) -> dict[str, Any]:
+    """The vehicle as plain data without words: links first, then what follows from them.
+
+    neutral: m_hull = rho V_hull - sum (m_i - rho V_i); trim: x and y of the CG such that weight
+    and buoyancy of the whole system have no moment at level with the arm stowed.
+    """
+    density = vehicle.environment.water_density_kg_m3
+    links = tuple(
+        _expand_link(link, density, f"arm.links.{i}") for i, link in enumerate(vehicle.arm.links)
+    )
+    arm = vehicle.arm.model_copy(update={"links": links})
+    hull = _expand_hull(vehicle.hull, arm, vehicle.environment)
+    return vehicle.model_copy(update={"arm": arm, "hull": hull}).model_dump(warnings=False)
+
+
+def _expand_link(link: Link, density: float, path: str) -> Link:
+    names = [name for name in LINK_WORDS if getattr(link, name) == "cylinder"]
+    if not names:
+        return link
+    shape = link.cylinder
+    if shape is None:
+        raise MissingShapeError(f"{path}.{names[0]}: 'cylinder' needs the section {path}.cylinder")
+    axial = shape.axial_added_mass_fraction * link.mass_kg
+    values = {
+        "volume_m3": shapes.cylinder_volume(shape),
+        "cg_m": shape.center_m,
+        "cb_m": shape.center_m,
+        "inertia_kg_m2": shapes.cylinder_inertia(shape, link.mass_kg).tolist(),
+        "added_mass": shapes.cylinder_added_mass(shape, density, axial).tolist(),
+        "drag": [shape.model_dump(exclude={"axial_added_mass_fraction"})],
+    }
+    return link.model_copy(update={name: values[name] for name in names})
+
+
+def _expand_hull(hull: Hull, arm: Arm, environment: Environment) -> Hull:
+    density = environment.water_density_kg_m3
+    words = [name for name in HULL_WORDS if getattr(hull, name) == "spheroid"]
+    if words and hull.spheroid is None:
+        raise MissingShapeError(f"hull.{words[0]}: 'spheroid' needs the section hull.spheroid")
+    if hull.volume_m3 == "spheroid":
+        hull = hull.model_copy(update={"volume_m3": shapes.spheroid_volume(hull.spheroid)})
+    if hull.mass_kg == "neutral":
+        wet = sum(link.mass_kg - density * link.volume_m3 for link in arm.links)
+        hull = hull.model_copy(update={"mass_kg": density * hull.volume_m3 - wet})
+    if hull.inertia_kg_m2 == "spheroid":
+        inertia = shapes.spheroid_inertia(hull.spheroid, hull.mass_kg)
+        hull = hull.model_copy(update={"inertia_kg_m2": inertia.tolist()})
+    if hull.added_mass == "spheroid":
+        added = shapes.spheroid_added_mass(hull.spheroid, density)
+        hull = hull.model_copy(update={"added_mass": added.tolist()})
+    level = _level_cg(hull, arm, density)
+    cg = [level[i] if value == "trim" else value for i, value in enumerate(hull.cg_m)]
+    return hull.model_copy(update={"cg_m": cg})
+
+
+def _level_cg(hull: Hull, arm: Arm, density: float) -> Array:
+    """CG (3,) of the hull that leaves no moment with the arm stowed (x and y are of use)."""
+    moment = density * hull.volume_m3 * np.array(hull.cb_m)
+    frames = arm_frames(arm, np.radians(arm.stowed_deg))[1:]
+    for link, (origin, rotation) in zip(arm.links, frames, strict=True):
+        moment -= link.mass_kg * (origin + rotation @ link.cg_m)
+        moment += density * link.volume_m3 * (origin + rotation @ link.cb_m)
+    return moment / hull.mass_kg

@@ -1,0 +1,30 @@
+"""Find the reference vehicle's file: the source tree first, then the installed share folders."""
+
+import os
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from uvms_dynamics.errors import VehicleFileError
+
+REFERENCE = "reference_auv.yaml"
+_SHARE = Path("share") / "uvms_bringup" / "config"
+
+
+def reference_file() -> Path:
+    """Path of the reference vehicle's file; raises VehicleFileError that lists where it looked."""
+    looked = list(_candidates())
+    for path in looked:
+        if path.is_file():
+            return path
+    places = "\n".join(f"  {path}" for path in looked)
+    raise VehicleFileError(f"the reference vehicle's file was not found; looked for\n{places}")
+
+
+def _candidates() -> Iterator[Path]:
+    for parent in Path(__file__).resolve().parents:  # the source tree (editable installation)
+        if (parent / "bringup" / "config").is_dir():
+            yield parent / "bringup" / "config" / REFERENCE
+    for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
+        yield Path(prefix) / _SHARE / REFERENCE
+    yield Path(sys.prefix) / _SHARE / REFERENCE
