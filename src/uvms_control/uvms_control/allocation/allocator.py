@@ -1,0 +1,163 @@
+"""The thrust allocator: one commanded wrench to thrusts within their limits.
+
+Weighted least squares is the default: when thrusters saturate, the axes of low weight give way
+first, so that roll and pitch (by which the arm would tip the vehicle) keep their moment while the
+force that holds position falls short for a while. Preserving the direction instead scales the
+whole wrench down: nothing is bent, but a lack of heave costs as much roll moment. For a vehicle
+whose attitude the arm disturbs the first is the better choice; the second is a switch.
+"""
+
+import numpy as np
+
+from uvms_control.allocation.authority import (
+    AXES,
+    axes_without_authority,
+    axis_authority,
+    thruster_matrix,
+)
+from uvms_control.allocation.least_squares import BoundedLeastSquares
+from uvms_control.checks import checked
+from uvms_control.config import AllocatorConfig
+from uvms_control.errors import ControlSetupError
+from uvms_control.vehicle_data import thruster_geometry, thruster_limits
+from uvms_dynamics import Vehicle
+from uvms_dynamics.errors import SignalError
+from uvms_dynamics.signals import Allocation, Array, ThrusterCommand, Wrench, to_seconds
+
+# A thrust this close to its bound (share of the limit) counts as saturated.
+SATURATION_MARGIN = 1e-9
+# Bisections of the scale when the direction is preserved: 2^-40 of the wrench.
+BISECTIONS = 40
+# Residual (share of the authority of an axis) that counts as none.
+EXACT = 1e-6
+
+
+class ThrustAllocator:
+    """min |W (B u - tau)|^2 + eps |u / u_max|^2 with |u| <= u_max, by an active-set method."""
+
+    def __init__(self, vehicle: Vehicle, config: AllocatorConfig):
+        """`vehicle` from `uvms_dynamics.load_vehicle`; any number of thrusters."""
+        matrix = thruster_matrix(*thruster_geometry(vehicle))
+        limits, slew = thruster_limits(vehicle)
+        self._setup(matrix, limits, slew, config)
+
+    @classmethod
+    def from_layout(
+        cls, matrix: Array, limits: Array, slew: Array, config: AllocatorConfig
+    ) -> "ThrustAllocator":
+        """From a thruster matrix (6, m) wrench per N, limits (m,) N and slew limits (m,) N/s."""
+        allocator = cls.__new__(cls)
+        allocator._setup(matrix, limits, slew, config)
+        return allocator
+
+    def _setup(self, matrix: Array, limits: Array, slew: Array, config: AllocatorConfig) -> None:
+        _check_layout(matrix, limits, slew)
+        self.matrix, self.limits, self._slew = matrix, limits, slew
+        self._config = config
+        self._solver = BoundedLeastSquares(
+            matrix, limits, np.array(config.weights), config.regularisation
+        )
+        self._row_scale = 1.0 / np.maximum(np.abs(matrix) @ limits, 1e-9)
+        self.axes_without_authority = axes_without_authority(matrix)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the last thrust and the warm start."""
+        self._stamp: int | None = None
+        self._thrust = np.zeros_like(self.limits)
+        self._solver.reset()
+
+    @property
+    def authority(self) -> Array:
+        """Largest force or moment along each axis (6,) with the others at zero, N and N m."""
+        return axis_authority(self.matrix, self.limits)
+
+    @property
+    def warning(self) -> str | None:
+        """What this layout cannot do, or None if it can push along every axis."""
+        if not self.axes_without_authority:
+            return None
+        return (
+            f"the {self.limits.size} thrusters cannot push independently along "
+            f"{', '.join(self.axes_without_authority)}; commands there leave a residual"
+        )
+
+    def step(self, wrench: Wrench) -> tuple[ThrusterCommand, Allocation]:
+        """Thrusts for a commanded wrench (6,) at its stamp, and what they achieve.
+
+        Raises SignalError for a wrench that is not finite.
+        """
+        tau = _checked_wrench(wrench)
+        lower, upper = self._bounds(wrench.stamp)
+        thrust = self._solver.solve(tau, lower, upper)
+        if self._config.preserve_direction and not self._exact(thrust, tau):
+            thrust = self._scaled(tau, lower, upper, thrust)
+        self._stamp, self._thrust = wrench.stamp, thrust
+        return self._result(wrench.stamp, tau, thrust, lower, upper)
+
+    def safe(self, stamp: int) -> tuple[ThrusterCommand, Allocation]:
+        """Zero thrust, for when the command is stale or missing."""
+        self.reset()
+        zero = np.zeros_like(self.limits)
+        return self._result(stamp, np.zeros(6), zero, -self.limits, self.limits)
+
+    def _result(
+        self, stamp: int, tau: Array, thrust: Array, lower: Array, upper: Array
+    ) -> tuple[ThrusterCommand, Allocation]:
+        achieved = self.matrix @ thrust
+        margin = SATURATION_MARGIN * self.limits
+        saturated = (thrust <= lower + margin) | (thrust >= upper - margin)
+        command = ThrusterCommand(stamp, thrust)
+        return command, Allocation(stamp, thrust, achieved, tau - achieved, saturated)
+
+    def _bounds(self, stamp: int) -> tuple[Array, Array]:
+        """Bounds (m,) N of this tick: the limits, and what the slew limit reaches from the last."""
+        if not self._config.slew_aware or self._stamp is None:
+            return -self.limits, self.limits
+        reach = self._slew * max(to_seconds(stamp - self._stamp), 0.0)
+        lower = np.maximum(-self.limits, self._thrust - reach)
+        return lower, np.minimum(self.limits, self._thrust + reach)
+
+    def _exact(self, thrust: Array, tau: Array) -> bool:
+        residual = self._row_scale * (self.matrix @ thrust - tau)
+        return bool(np.max(np.abs(residual)) <= EXACT)
+
+    def _scaled(self, tau: Array, lower: Array, upper: Array, fallback: Array) -> Array:
+        """Thrust for the largest share of the wrench that is attainable, by bisection.
+
+        Attainable shares form an interval that starts at zero (the bounds are convex); where even
+        a zero wrench is out of reach (slew limits), the least-squares thrust stands.
+        """
+        best = self._solver.solve(np.zeros(6), lower, upper)
+        if not self._exact(best, np.zeros(6)):
+            return fallback
+        low, high = 0.0, 1.0
+        for _ in range(BISECTIONS):
+            share = 0.5 * (low + high)
+            thrust = self._solver.solve(share * tau, lower, upper)
+            if self._exact(thrust, share * tau):
+                low, best = share, thrust
+            else:
+                high = share
+        return best
+
+
+def _checked_wrench(wrench: Wrench) -> Array:
+    tau = np.asarray(wrench.wrench, dtype=np.float64)
+    for axis, value in zip(AXES, tau.ravel(), strict=False):
+        if not np.isfinite(value):
+            raise SignalError(f"wrench_command.{axis}: {value}, expected a finite number")
+    return checked("wrench_command", tau, (6,))
+
+
+def _check_layout(matrix: Array, limits: Array, slew: Array) -> None:
+    m = np.size(limits)
+    if np.shape(matrix) != (6, m) or m == 0:
+        raise ControlSetupError(f"thruster matrix: shape {np.shape(matrix)}, expected (6, {m})")
+    if np.shape(slew) != (m,):
+        raise ControlSetupError(f"thruster slew limits: shape {np.shape(slew)}, expected ({m},)")
+    if not np.isfinite(matrix).all():
+        raise ControlSetupError("thruster matrix: holds a value that is not finite")
+    for name, values in (("limits", limits), ("slew limits", slew)):
+        if not (values > 0.0).all():
+            raise ControlSetupError(f"thruster {name}: {values}, expected positive numbers")

@@ -1,0 +1,39 @@
+"""What a thruster layout can do: its matrix, its authority on each axis, its missing axes."""
+
+import numpy as np
+from scipy.optimize import linprog
+
+from uvms_dynamics.signals import Array
+
+AXES = ("X", "Y", "Z", "K", "M", "N")
+# Relative size below which a part of an axis counts as outside the span of the thrusters.
+SPAN_TOLERANCE = 1e-9
+
+
+def thruster_matrix(positions: Array, directions: Array) -> Array:
+    """B (6, m): column i is the wrench [d_i; r_i x d_i] about the body origin of one newton.
+
+    `positions` (m, 3) in m and `directions` (m, 3), unit vectors, in the body frame (Fossen,
+    Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., eq. (12.230)).
+    """
+    return np.ascontiguousarray(np.hstack([directions, np.cross(positions, directions)]).T)
+
+
+def axis_authority(matrix: Array, limits: Array) -> Array:
+    """Largest force or moment along each axis (6,), N and N m, with all other axes at zero."""
+    return np.array([_pure_authority(matrix, limits, axis) for axis in range(6)])
+
+
+def _pure_authority(matrix: Array, limits: Array, axis: int) -> float:
+    others = np.delete(matrix, axis, axis=0)
+    bounds = list(zip(-limits, limits, strict=True))
+    found = linprog(-matrix[axis], A_eq=others, b_eq=np.zeros(5), bounds=bounds, method="highs")
+    return max(float(matrix[axis] @ found.x), 0.0) if found.success else 0.0
+
+
+def axes_without_authority(matrix: Array) -> tuple[str, ...]:
+    """Names of the axes along which the thrusters cannot push without pushing along another."""
+    basis, sizes, _ = np.linalg.svd(matrix, full_matrices=False)
+    span = basis[:, sizes > SPAN_TOLERANCE * max(sizes[0], 1e-300)]
+    outside = np.linalg.norm(np.eye(6) - span @ span.T, axis=0)
+    return tuple(axis for axis, part in zip(AXES, outside, strict=True) if part > 1e-6)

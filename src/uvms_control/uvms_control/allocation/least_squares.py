@@ -1,0 +1,62 @@
+"""Weighted least-squares thrust allocation within bounds, in scaled variables.
+
+    min over u of  |W (B u - tau)|^2 + eps |u / u_max|^2    subject to  lower <= u <= upper
+
+The rows are divided by the authority of each axis and the columns multiplied by the limit of each
+thruster, so that newtons and newton metres compare, the weights W are free of units, and eps
+weighs a share of thrust against a share of authority.
+"""
+
+import numpy as np
+
+from uvms_control.allocation.box_qp import TOO_MANY_STEPS, solve_box_qp
+from uvms_control.errors import AllocationError
+from uvms_dynamics.signals import Array
+
+# Each step of the active-set method holds or frees one thruster; a warm start needs a handful.
+MAX_STEPS_PER_THRUSTER = 100
+
+
+class BoundedLeastSquares:
+    """Solver for one thruster layout; it remembers the last solution as its warm start."""
+
+    def __init__(self, matrix: Array, limits: Array, weights: Array, regularisation: float):
+        """`matrix` (6, m) wrench per newton, `limits` (m,) N > 0, `weights` (6,) >= 0."""
+        self.matrix = np.ascontiguousarray(matrix, dtype=np.float64)
+        self.limits = np.array(limits, dtype=np.float64)
+        authority = np.abs(self.matrix) @ self.limits
+        self._row_scale = np.asarray(weights) / np.where(authority > 0.0, authority, 1.0)
+        scaled = self._row_scale[:, None] * self.matrix * self.limits
+        m = self.limits.size
+        self._hessian = np.ascontiguousarray(scaled.T @ scaled + regularisation * np.eye(m))
+        self._gradient_of_wrench = -scaled.T * self._row_scale
+        self._max_steps = MAX_STEPS_PER_THRUSTER * max(m, 1)
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the warm start."""
+        self._u = np.zeros(self.limits.size)
+        self._state = np.zeros(self.limits.size, dtype=np.int64)
+
+    def solve(self, tau: Array, lower: Array | None = None, upper: Array | None = None) -> Array:
+        """Thrusts (m,) in N for the wrench `tau` (6,); bounds default to the limits themselves."""
+        low = -np.ones_like(self.limits) if lower is None else lower / self.limits
+        high = np.ones_like(self.limits) if upper is None else upper / self.limits
+        steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
+        if steps == TOO_MANY_STEPS:
+            # A warm start can at worst cost steps; from zero the count says something is wrong.
+            self.reset()
+            steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
+        if steps < 0:
+            self.reset()
+            raise AllocationError(
+                f"no thrust found for the wrench {np.array2string(tau, precision=6)}: after "
+                f"{self._max_steps} steps of the active-set method the optimum was not reached; "
+                "raise allocator.regularisation or bring allocator.weights closer together"
+            )
+        bound_low = -self.limits if lower is None else lower
+        bound_high = self.limits if upper is None else upper
+        return np.clip(self._u * self.limits, bound_low, bound_high)
+
+    def _minimise(self, g: Array, low: Array, high: Array) -> int:
+        return solve_box_qp(self._hessian, g, low, high, self._u, self._state, self._max_steps)

@@ -1,0 +1,77 @@
+"""The arm's law: S-surface feedback per joint with the arm's model as Delta-u, eq. (19)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uvms_control.config import ArmControlConfig
+from uvms_control.errors import ControlSetupError
+from uvms_control.s_surface import SSurface
+from uvms_dynamics.signals import Array
+
+
+def sampled_gains(bandwidth: float, damping_ratio: float, dt: float) -> tuple[float, float]:
+    """Gains (k in 1/s^2, d in 1/s) that give a sampled double integrator the wanted poles.
+
+    The torque is held over dt, so that e_ddot = -k e - d e_dot with e sampled has the poles of
+        z^2 + (k dt^2/2 + d dt - 2) z + (1 + k dt^2/2 - d dt).
+    They are put at z = exp(s dt), s the roots of s^2 + 2 zeta w s + w^2: the loop is stable for
+    every bandwidth and period, and k -> w^2, d -> 2 zeta w as dt -> 0 (Franklin, Powell and
+    Workman, Digital Control of Dynamic Systems, 3rd ed., section 8.1).
+    """
+    if dt <= 0.0:
+        return bandwidth**2, 2.0 * damping_ratio * bandwidth
+    spread = bandwidth * np.sqrt(complex(damping_ratio**2 - 1.0))
+    first, second = (
+        np.exp((-damping_ratio * bandwidth + sign * spread) * dt) for sign in (1.0, -1.0)
+    )
+    a1, a0 = -(first + second).real, (first * second).real
+    return (1.0 + a1 + a0) / dt**2, (3.0 + a1 - a0) / (2.0 * dt)
+
+
+@dataclass(frozen=True)
+class ArmController:
+    """tau = K (u + Delta-u), K = A M_qq(q): gains mean bandwidth, whatever the joint carries."""
+
+    config: ArmControlConfig
+    effort_limit: Array  # (n,) N m
+
+    def __post_init__(self) -> None:
+        limits = np.array(self.effort_limit, dtype=np.float64)
+        if not (limits > 0.0).all():
+            raise ControlSetupError(f"arm effort limits: {limits} N m, expected positive numbers")
+        object.__setattr__(self, "effort_limit", limits)
+
+    def law(self, dt: float) -> SSurface:
+        """The S-surface whose slope near zero has the bandwidth asked for at the period dt (s)."""
+        k, d = sampled_gains(self.config.bandwidth, self.config.damping_ratio, dt)
+        one, n = self.config.amplitude, self.effort_limit.size
+        # With an error scale of A / (2 k) and k_error = 1 the slope A k_error / (2 scale) is k.
+        return SSurface(
+            k_error=np.ones(n),
+            k_rate=np.ones(n),
+            error_scale=np.full(n, one / (2.0 * k)),
+            rate_scale=np.full(n, one / (2.0 * d)),
+            amplitude=np.full(n, one),
+        )
+
+    def steered_rate(self, error: Array, q_dot: Array, dt: float) -> Array:
+        """Rate (n,) rad/s that the law steers to near zero error: q_dot_d + (k / d) e.
+
+        Friction is compensated at this rate. At the measured one the compensation would feed back
+        as negative damping and chatter about zero; at the reference rate alone a joint would stick
+        wherever its error is worth less than its dry friction.
+        """
+        k, d = sampled_gains(self.config.bandwidth, self.config.damping_ratio, dt)
+        return q_dot + (k / d) * error
+
+    def effort(
+        self, error: Array, rate: Array, inertia: Array, feed_forward: Array, dt: float
+    ) -> Array:
+        """Joint torques (n,) N m within the limits: M_qq A S(e, e_dot) + feed-forward, eq. (19).
+
+        `error` q_d - q, `rate` of it, `inertia` M_qq(q) (n, n), `feed_forward` (n,) N m: K Delta-u,
+        the torque that the model needs for the reference acceleration.
+        """
+        feedback = inertia @ self.law(dt).acceleration(error, rate)
+        return np.clip(feedback + feed_forward, -self.effort_limit, self.effort_limit)

@@ -1,0 +1,163 @@
+"""The controller of vehicle and arm: one tick from estimated state and reference to commands."""
+
+import numpy as np
+
+from uvms_control.arm_controller import ArmController
+from uvms_control.checks import checked, checked_quaternion, checked_same_stamp
+from uvms_control.compensation import EndEffectorCompensation, JointCorrection
+from uvms_control.config import ControlConfig
+from uvms_control.reference import ReferenceSample, check_reference, sample_reference
+from uvms_control.tracking_error import tracking_error
+from uvms_control.vehicle_controller import VehicleCommand, VehicleController
+from uvms_control.vehicle_data import effort_limits, joint_limits
+from uvms_dynamics import (
+    Vehicle,
+    build_model,
+    inverse_dynamics,
+    joint_passive_torque,
+    mass_matrix,
+)
+from uvms_dynamics.errors import SignalError
+from uvms_dynamics.signals import (
+    Array,
+    JointCommand,
+    JointStates,
+    Odometry,
+    Reference,
+    Wrench,
+    to_seconds,
+)
+
+
+class Controller:
+    """Vehicle by eq. (22), arm by eq. (19); see `VehicleController` and `ArmController`."""
+
+    def __init__(self, vehicle: Vehicle, config: ControlConfig):
+        """`vehicle` from `uvms_dynamics.load_vehicle`."""
+        self._config = config
+        self._n = vehicle.n_joints
+        self._model = build_model(vehicle)
+        self.vehicle = VehicleController(self._model, config.vehicle)
+        lower, upper = joint_limits(vehicle)
+        self._away_from_stops = 0.5 * (lower + upper)
+        self.arm = ArmController(config.arm, effort_limits(vehicle))
+        self.compensation = EndEffectorCompensation(self._model, config.compensation, lower, upper)
+        self.reset()
+
+    def reset(self) -> None:
+        """Start afresh, as before the first step."""
+        self._stamp: int | None = None
+        self._reference: Reference | None = None
+        self.vehicle.reset()
+        self.compensation.reset()
+
+    def step(
+        self,
+        odometry: Odometry,
+        joints: JointStates,
+        disturbance: Wrench | None,
+        reference: Reference,
+    ) -> tuple[Wrench, JointCommand]:
+        """Commands for the tick at `odometry.stamp`, held until the next.
+
+        `disturbance`: wrench that acts ON the vehicle as the observer sees it, or None.
+        Raises SignalError, naming the value, and keeps its state if an input is bad.
+        """
+        self._check(odometry, joints, disturbance, reference)
+        dt = self._elapsed(odometry.stamp)
+        desired = sample_reference(reference, odometry.stamp)
+        inertia = mass_matrix(self._model, joints.position)
+        command = self._vehicle_command(odometry, inertia[:6, :6], disturbance, desired, dt)
+        effort = self._joint_effort(odometry, joints, inertia[6:, 6:], desired, command, dt)
+        return Wrench(odometry.stamp, command.wrench), JointCommand(odometry.stamp, effort)
+
+    def _vehicle_command(
+        self,
+        odometry: Odometry,
+        inertia: Array,
+        disturbance: Wrench | None,
+        desired: ReferenceSample,
+        dt: float,
+    ) -> VehicleCommand:
+        if not self._config.enabled:
+            return VehicleCommand(np.zeros(6), np.zeros(6))
+        feed_forward = self._config.observer and disturbance is not None
+        known = disturbance.wrench if feed_forward else np.zeros(6)
+        tracking = tracking_error(odometry, desired)
+        return self.vehicle.step(odometry, inertia, known, tracking, dt)
+
+    def _joint_effort(
+        self,
+        odometry: Odometry,
+        joints: JointStates,
+        inertia: Array,
+        desired: ReferenceSample,
+        command: VehicleCommand,
+        dt: float,
+    ) -> Array:
+        correction = self._correction(odometry, desired, dt)
+        error = desired.q + correction.angle - joints.position
+        rate = desired.q_dot + correction.rate - joints.velocity
+        model = self._arm_model_torque(odometry, joints, desired, command)
+        steered = self.arm.steered_rate(error, desired.q_dot + correction.rate, dt)
+        friction = joint_passive_torque(self._model, self._away_from_stops, steered)
+        feed_forward = model - self._config.arm.friction_compensation * friction
+        return self.arm.effort(error, rate, inertia, feed_forward, dt)
+
+    def _correction(
+        self, odometry: Odometry, desired: ReferenceSample, dt: float
+    ) -> JointCorrection:
+        if self._config.enabled and self._config.compensate_vehicle_motion:
+            return self.compensation.step(odometry, desired, dt)
+        return JointCorrection(np.zeros(self._n), np.zeros(self._n))
+
+    def _arm_model_torque(
+        self,
+        odometry: Odometry,
+        joints: JointStates,
+        desired: ReferenceSample,
+        command: VehicleCommand,
+    ) -> Array:
+        """K Delta-u of eq. (19): what the model needs for the reference acceleration (n,) N m.
+
+        Weight, buoyancy, drag and the vehicle's own acceleration are in it, friction is not.
+        """
+        whole = inverse_dynamics(
+            self._model,
+            odometry.quaternion,
+            odometry.nu,
+            command.acceleration,
+            joints.position,
+            joints.velocity,
+            desired.q_ddot,
+        )
+        return whole[6:]
+
+    def _elapsed(self, stamp: int) -> float:
+        """Seconds since the last step; 0 at the first."""
+        last, self._stamp = self._stamp, stamp
+        return 0.0 if last is None else to_seconds(stamp - last)
+
+    def _check(
+        self,
+        odometry: Odometry,
+        joints: JointStates,
+        disturbance: Wrench | None,
+        reference: Reference,
+    ) -> None:
+        if self._stamp is not None and odometry.stamp <= self._stamp:
+            raise SignalError(
+                f"odometry: stamp {odometry.stamp} ns, expected one after {self._stamp} ns"
+            )
+        checked_same_stamp(odometry.stamp, [("joint_states", joints.stamp)])
+        checked("odometry.position", odometry.position, (3,))
+        checked_quaternion("odometry.quaternion", odometry.quaternion)
+        checked("odometry.nu", odometry.nu, (6,))
+        checked("joint_states.position", joints.position, (self._n,))
+        checked("joint_states.velocity", joints.velocity, (self._n,))
+        if disturbance is not None:
+            checked_same_stamp(odometry.stamp, [("disturbance", disturbance.stamp)])
+            checked("disturbance", disturbance.wrench, (6,))
+        if reference is not self._reference:
+            check_reference(reference, self._n)
+            self._reference = reference

@@ -1,0 +1,15 @@
+"""Errors of the control package; bad signals raise `uvms_dynamics.errors.SignalError`."""
+
+from uvms_dynamics.errors import UvmsError
+
+
+class ControlError(UvmsError):
+    """Root of this package's own errors."""
+
+
+class ControlSetupError(ControlError):
+    """A controller or allocator was given gains, weights or limits that do not fit the vehicle."""
+
+
+class AllocationError(ControlError):
+    """A thrust allocation could not be computed."""

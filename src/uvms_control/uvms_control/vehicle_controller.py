@@ -1,0 +1,71 @@
+"""The vehicle's law: S-surface feedback, model dynamics and observed disturbance, eq. (22)."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uvms_control.config import VehicleControlConfig
+from uvms_control.s_surface import SSurface
+from uvms_control.tracking_error import TrackingError
+from uvms_dynamics import hull_bias_wrench
+from uvms_dynamics.signals import Array, Odometry
+
+# The integral rests while the S-surface's argument is beyond this: u is then above tanh(1) = 0.76.
+INTEGRATION_RANGE = 2.0
+
+
+@dataclass(frozen=True)
+class VehicleCommand:
+    """What the vehicle shall do now, in its body frame."""
+
+    wrench: Array  # (6,) N, N m about the body origin
+    acceleration: Array  # (6,) nu_dot that this wrench is meant to cause
+
+
+class VehicleController:
+    """Eq. (22), with the integral of the error as the Delta-u of eq. (19)."""
+
+    def __init__(self, model, config: VehicleControlConfig):
+        """`model` from `uvms_dynamics.build_model`."""
+        self._model = model
+        self.law = SSurface(
+            k_error=np.array(config.k_error),
+            k_rate=np.array(config.k_rate),
+            error_scale=np.array(config.error_scale),
+            rate_scale=np.array(config.rate_scale),
+            amplitude=np.array(config.amplitude),
+        )
+        self._k_integral = np.array(config.k_integral)
+        self._limit = config.integral_limit
+        self.reset()
+
+    def reset(self) -> None:
+        """Empty the integral."""
+        self.delta_u = np.zeros(6)
+
+    def step(
+        self,
+        odometry: Odometry,
+        inertia: Array,
+        disturbance: Array,
+        tracking: TrackingError,
+        dt: float,
+    ) -> VehicleCommand:
+        """Eq. (22): tau = M(q) [nu_dot_d + A (S(e, e_dot) + Delta-u)] + C nu + D nu - F_dis.
+
+        `inertia` M (6, 6): vehicle block of the whole system's mass matrix, added mass and arm
+        included. `disturbance` F_dis (6,): what acts ON the vehicle (zero to leave it out);
+        corrected from the print, where F_dis has the sign of a load to carry.
+        """
+        self._integrate(tracking, dt)
+        feedback = self.law.acceleration(tracking.error, tracking.rate, self.delta_u)
+        acceleration = tracking.acceleration + feedback
+        bias = hull_bias_wrench(self._model, odometry.nu)
+        return VehicleCommand(inertia @ acceleration + bias - disturbance, acceleration)
+
+    def _integrate(self, tracking: TrackingError, dt: float) -> None:
+        """Integrate where the law is not saturated, within the limit (anti-windup)."""
+        near = np.abs(self.law.argument(tracking.error, tracking.rate)) < INTEGRATION_RANGE
+        change = self._k_integral * tracking.error / self.law.error_scale * dt
+        moved = self.delta_u + np.where(near, change, 0.0)
+        self.delta_u = np.clip(moved, -self._limit, self._limit)

@@ -1,0 +1,30 @@
+"""What the controller and the allocator read from the vehicle, as arrays in SI units."""
+
+import numpy as np
+
+from uvms_dynamics import Vehicle
+from uvms_dynamics.signals import Array
+
+
+def joint_limits(vehicle: Vehicle) -> tuple[Array, Array]:
+    """Lower and upper joint limits (n,), (n,) in rad."""
+    joints = vehicle.arm.joints
+    lower = np.radians([joint.lower_deg for joint in joints])
+    return lower, np.radians([joint.upper_deg for joint in joints])
+
+
+def effort_limits(vehicle: Vehicle) -> Array:
+    """Largest joint torques (n,) in N m."""
+    return np.array([joint.effort_limit_nm for joint in vehicle.arm.joints])
+
+
+def thruster_geometry(vehicle: Vehicle) -> tuple[Array, Array]:
+    """Where thrusters act (m, 3) in m and along what (m, 3), body frame."""
+    positions = np.array([thruster.position_m for thruster in vehicle.thrusters])
+    return positions, np.array([thruster.direction for thruster in vehicle.thrusters])
+
+
+def thruster_limits(vehicle: Vehicle) -> tuple[Array, Array]:
+    """Largest thrust (m,) in N and largest rate of thrust (m,) in N/s."""
+    limits = np.array([thruster.limit_n for thruster in vehicle.thrusters])
+    return limits, np.array([thruster.slew_limit_n_s for thruster in vehicle.thrusters])
