@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 from hypothesis import given
 from hypothesis import strategies as st
-
 from uvms_dynamics.gate import Covering, Periodic, Previous, Same, TickGate
 
 DT = 50
@@ -116,3 +115,11 @@ def test_a_node_beside_the_loop_keeps_its_open_ticks_in_order():
     assert [tick.stamp for tick in gated.push("b", 0, "b0")] == [0]
     assert [tick.stamp for tick in gated.push("b", DT, "b1")] == [DT]
     assert gated.abandoned == 0
+
+
+def test_a_trigger_faster_than_the_ticks():
+    gated = TickGate({"imu": Periodic(10)}, "imu", lockstep=True, every=DT)
+    released = [gated.push("imu", when, when) for when in range(0, 2 * DT + 1, 10)]
+    ticks = [tick for some in released for tick in some]
+    assert [tick.stamp for tick in ticks] == [0, DT, 2 * DT]
+    assert ticks[1]["imu"] == (10, 20, 30, 40, 50)

@@ -109,15 +109,22 @@ class TickGate:
         lockstep: wait for all inputs of the stamp (True), or for the trigger alone (False).
         in_loop: the plant waits for this node's answer, so a newer trigger means that it gave up
             the older tick by time-out. A node beside the loop keeps its open ticks instead.
+        every: only stamps at multiples of this are ticks (ns), for a trigger that comes more often.
     """
 
     def __init__(
-        self, inputs: Mapping[str, Input], trigger: str, lockstep: bool, in_loop: bool = True
+        self,
+        inputs: Mapping[str, Input],
+        trigger: str,
+        lockstep: bool,
+        in_loop: bool = True,
+        every: int = 1,
     ) -> None:
         self._inputs = dict(inputs)
         self._trigger = trigger
         self._lockstep = lockstep
         self._in_loop = in_loop
+        self._every = every
         self._open: deque[int] = deque()
         self._broken = True  # no tick before: its feedback is not waited for
         self._last = -1
@@ -126,7 +133,7 @@ class TickGate:
 
     def push(self, name: str, stamp: int, value: Any) -> list[Tick]:
         """Take an input; returns the ticks that it completes, in order."""
-        if name == self._trigger:
+        if name == self._trigger and stamp % self._every == 0:
             if stamp <= self._last:
                 self.late += 1
                 return []

@@ -1,0 +1,165 @@
+"""The conductor of a run: waits for the nodes, sends the goal, starts time, watches, records."""
+
+import time
+from collections.abc import Callable
+from typing import Any
+
+from rclpy.action import ActionClient
+from rclpy.node import Node
+from std_srvs.srv import SetBool, Trigger
+
+from uvms_bringup.errors import RunError
+from uvms_bringup.ros.recorder import Recorder, Write
+from uvms_dynamics import diagnostics, topics
+from uvms_dynamics.diagnostics import Status
+from uvms_dynamics.messages import from_message, to_message
+from uvms_dynamics.ros.convert import action_class, message_class, to_ros
+from uvms_dynamics.ros.node import qos_profile
+from uvms_dynamics.ros.spin import Spinner
+from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
+
+START_PATIENCE_S = 90.0
+"""Wall time for all nodes to come up and find each other; the first start compiles kernels."""
+ANSWER_PATIENCE_S = 60.0
+END_PATIENCE_S = 2.0
+LOOP_END = (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND, topics.WRENCH_ACHIEVED, topics.ALLOCATION)
+
+
+class Conductor(Node):
+    """Leads a run from the first tick to the last and hands every message to `write`."""
+
+    def __init__(self, write: Write, watch: Callable[[], None], **options: Any) -> None:
+        super().__init__("conductor", **options)
+        self._recorder = Recorder(self, write)
+        self._watch = watch
+        self.statuses: dict[str, Status] = {}
+        self.feedback: Any = None
+        self.result: Any = None
+        self.create_subscription(
+            message_class(topics.DIAGNOSTICS),
+            topics.DIAGNOSTICS.name,
+            self._take_status,
+            qos_profile(topics.DIAGNOSTICS.qos),
+        )
+        self._ready = {
+            node: self.create_client(Trigger, f"{node}/ready") for node in topics.NODES
+        }
+        self._start = self.create_client(Trigger, "start")
+        self._pause = self.create_client(SetBool, "pause")
+
+    @property
+    def stamp(self) -> int:
+        """Newest simulation time, ns."""
+        return self._recorder.stamp
+
+    def lead(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
+        """Bring the run to its first tick, send the goal and let time go."""
+        self._await_nodes(spinner)
+        self._call(spinner, self._start, Trigger.Request(), "plant/start")
+        self._await(
+            spinner,
+            lambda: topics.THRUSTER_COMMAND.name in self._recorder.newest,
+            START_PATIENCE_S,
+            lambda: "the loop did not close at the first tick",
+        )
+        if goal is not None:
+            self._send_goal(spinner, goal)
+        self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
+
+    def arrived(self, end: int) -> bool:
+        """Whether the plant stands at `end` and the answers of its last tick are recorded."""
+        newest = self._recorder.newest
+        if self.stamp < end:
+            self._arrival = None
+            return False
+        self._arrival = self._arrival or time.monotonic()
+        answered = all(newest.get(topic.name, -1) >= end for topic in LOOP_END)
+        return answered or time.monotonic() - self._arrival > END_PATIENCE_S
+
+    _arrival: float | None = None
+
+    def _await_nodes(self, spinner: Spinner) -> None:
+        lacks = dict.fromkeys(self._ready, "has not come up")
+        asked: dict[str, Any] = {}
+
+        def all_ready() -> bool:
+            for node, client in self._ready.items():
+                answer = asked.get(node)
+                if answer is not None and answer.done():
+                    lacks[node] = "" if answer.result().success else answer.result().message
+                    answer = asked.pop(node) and None
+                if answer is None and lacks[node] and client.service_is_ready():
+                    asked[node] = client.call_async(Trigger.Request())
+            return not any(lacks.values())
+
+        self._await(
+            spinner,
+            all_ready,
+            START_PATIENCE_S,
+            lambda: "; ".join(f"{node}: {lack}" for node, lack in lacks.items() if lack),
+        )
+
+    def _send_goal(self, spinner: Spinner, goal: PathGoal | JointGoal) -> None:
+        action = next(item for item in topics.ACTIONS if isinstance(goal, item.goal))
+        cls = action_class(action)
+        self._client = ActionClient(self, cls, action.name)
+        message = to_ros(cls.Goal, to_message(action, goal))
+        self._await(
+            spinner,
+            self._client.server_is_ready,
+            ANSWER_PATIENCE_S,
+            lambda: f"nobody serves the action {action.name!r}",
+        )
+        sent = self._client.send_goal_async(message, feedback_callback=self._take_feedback)
+        self._await(
+            spinner, sent.done, ANSWER_PATIENCE_S, lambda: f"no answer from {action.name!r}"
+        )
+        handle = sent.result()
+        if not handle.accepted:
+            raise RunError(f"the planner rejected the goal: {self._reason(spinner)}")
+        handle.get_result_async().add_done_callback(self._take_result)
+
+    def _reason(self, spinner: Spinner) -> str:
+        # An action's rejection carries no text; the planner gives its reason on /diagnostics.
+        deadline = time.monotonic() + END_PATIENCE_S
+        while time.monotonic() < deadline:
+            status = self.statuses.get("motion_planner")
+            if status is not None and status.level == diagnostics.ERROR:
+                return status.message
+            spinner.spin_once(0.05)
+        return "no reason given"
+
+    def _call(self, spinner: Spinner, client: Any, request: Any, name: str) -> None:
+        answer = client.call_async(request)
+        self._await(spinner, answer.done, ANSWER_PATIENCE_S, lambda: f"no answer from {name}")
+        if not answer.result().success:
+            raise RunError(f"{name}: {answer.result().message}")
+
+    def _await(
+        self, spinner: Spinner, ready: Callable[[], bool], patience: float, lack: Callable[[], str]
+    ) -> None:
+        deadline = time.monotonic() + patience
+        while not ready():
+            self._watch()
+            if spinner.done.done():
+                raise RunError("stopped before the run began")
+            if time.monotonic() > deadline:
+                raise RunError(f"waited {patience:.0f} s in vain: {lack()}")
+            spinner.spin_once(0.05)
+
+    def _take_status(self, msg: Any) -> None:
+        status = from_message(topics.DIAGNOSTICS, msg)
+        self.statuses[status.name] = status
+
+    def _take_feedback(self, msg: Any) -> None:
+        self.feedback = msg.feedback
+
+    def _take_result(self, answer: Any) -> None:
+        self.result = answer.result().result
+
+    def progress(self) -> str:
+        """One line on where the run stands."""
+        text = f"t = {to_seconds(self.stamp):6.1f} s"
+        if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
+            text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
+        return text

@@ -1,0 +1,54 @@
+"""The parameters of each node of a run, from the scenario; as a file for nodes of their own."""
+
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from uvms_bringup.pace import Pace
+from uvms_bringup.scenario import Scenario
+from uvms_dynamics import topics
+from uvms_dynamics.config import Config
+from uvms_dynamics.ros.parameters import flatten
+
+
+def node_parameters(scenario: Scenario, vehicle_file: Path, pace: Pace) -> dict[str, dict[str, Any]]:
+    """ROS parameters by node."""
+    common = {
+        "vehicle_file": str(vehicle_file),
+        "seed": scenario.seed,
+        "pace": pace.name,
+        "control_period_s": scenario.plant.control_period_s,
+    }
+    own = {node: common | _own(scenario, node) for node in topics.NODES}
+    own["plant"] |= {
+        "realtime_factor": pace.factor,
+        "duration_s": scenario.duration_s,
+        "auto_start": False,
+        "start_paused": True,
+    }
+    return own
+
+
+def write_parameter_file(path: Path, node: str, parameters: dict[str, Any]) -> Path:
+    """Write one node's parameters in ROS's YAML form, under any namespace."""
+    content = {f"/**/{node}": {"ros__parameters": parameters}}
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    return path
+
+
+def _own(scenario: Scenario, node: str) -> dict[str, Any]:
+    return flatten(config_of(scenario, node))
+
+
+def config_of(scenario: Scenario, node: str) -> Config:
+    """The part of a scenario that configures one node."""
+    return {
+        "plant": scenario.plant,
+        "navigation": scenario.navigation,
+        "disturbance_observer": scenario.observer,
+        "motion_planner": scenario.planner,
+        "controller": scenario.control,
+        "thrust_allocator": scenario.allocation,
+    }[node]

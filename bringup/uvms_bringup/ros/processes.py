@@ -1,0 +1,82 @@
+"""The nodes of a run as processes of their own: command line, log file, clean end."""
+
+import os
+import signal
+import subprocess
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from uvms_bringup.errors import RunError
+from uvms_dynamics import topics
+
+PATIENCE_S = 10.0
+"""Wall time that a node gets to end by itself."""
+
+
+def node_module(node: str) -> str:
+    """The module of a node's executable."""
+    if node not in topics.NODES:
+        raise RunError(f"unknown node {node!r}; choose one of {', '.join(topics.NODES)}")
+    return f"{topics.NODES[node].package}.nodes.{node}"
+
+
+def node_command(node: str, parameter_file: Path, namespace: str = "") -> list[str]:
+    """The command that starts one node."""
+    command = [sys.executable, "-m", node_module(node), "--ros-args"]
+    command += ["--params-file", str(parameter_file)]
+    return command + (["-r", f"__ns:={namespace}"] if namespace else [])
+
+
+class NodeProcesses:
+    """Starts nodes as processes, tells when one dies, and ends them."""
+
+    def __init__(self, log_folder: Path, environment: Mapping[str, str]) -> None:
+        self._log_folder = log_folder
+        self._environment = dict(environment)
+        self._processes: dict[str, subprocess.Popen] = {}
+        log_folder.mkdir(parents=True, exist_ok=True)
+
+    def start(self, node: str, command: Sequence[str]) -> None:
+        """Start a node; what it prints goes to a file of its own."""
+        with self.log_of(node).open("wb") as log:
+            self._processes[node] = subprocess.Popen(
+                command,
+                stdout=log,
+                stderr=subprocess.STDOUT,
+                stdin=subprocess.DEVNULL,
+                env=self._environment,
+                start_new_session=True,  # Ctrl-C reaches the parent alone, which ends the nodes
+            )
+
+    def log_of(self, node: str) -> Path:
+        """Where a node's output goes."""
+        return self._log_folder / f"{node}.log"
+
+    def check(self) -> None:
+        """Raise RunError if a node has died, with the end of what it printed."""
+        for node, process in self._processes.items():
+            if process.poll() is not None:
+                tail = "\n".join(self.log_of(node).read_text(errors="replace").splitlines()[-8:])
+                raise RunError(f"node {node} ended with code {process.returncode}:\n{tail}")
+
+    def stop(self) -> None:
+        """End all nodes: SIGINT first, SIGKILL for one that does not listen."""
+        for process in self._processes.values():
+            if process.poll() is None:
+                process.send_signal(signal.SIGINT)
+        for process in self._processes.values():
+            try:
+                process.wait(PATIENCE_S)
+            except subprocess.TimeoutExpired:
+                process.kill()
+                process.wait()
+
+
+def environment(log_folder: Path) -> dict[str, str]:
+    """Environment of a run's processes: loopback only, and a domain of its own if none is set."""
+    values = dict(os.environ)
+    values.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    values.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))
+    values["ROS_LOG_DIR"] = str(log_folder)
+    return values

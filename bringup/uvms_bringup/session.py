@@ -1,0 +1,133 @@
+"""One run from its scenario to its folder: run.mcap, config.yaml, summary.json."""
+
+import json
+import subprocess
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from datetime import datetime, timezone
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from uvms_bringup.errors import RunError
+from uvms_bringup.log.encode import SignalWriter
+from uvms_bringup.log.writer import LogWriter
+from uvms_bringup.pace import Pace
+from uvms_bringup.progress import ProgressLine
+from uvms_bringup.scenario import Scenario
+from uvms_bringup.simulate import simulate
+from uvms_bringup.summary import summarise
+from uvms_dynamics import Vehicle, dump_vehicle
+from uvms_dynamics.messages.parts import path_to_json
+from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds
+
+Goal = PathGoal | JointGoal | None
+Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
+
+
+@dataclass(frozen=True)
+class Session:
+    """A run that is about to begin."""
+
+    scenario: Scenario
+    vehicle: Vehicle
+    goal: Goal
+    folder: Path
+    pace: str
+    command: str
+
+    def run_simulation(self) -> dict[str, Any]:
+        """`uvms simulate`: returns the summary."""
+
+        def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
+            names = self.vehicle.joint_names, self.vehicle.thruster_names
+            writer = SignalWriter(log, *names)
+            return simulate(self.scenario, self.vehicle, self.goal, writer, progress)
+
+        return self._record(run)
+
+    def run_graph(self, pace: Pace, composed: bool) -> dict[str, Any]:
+        """`uvms run`: returns the summary."""
+        from uvms_bringup.ros.run import run_graph  # ROS is wanted here only
+
+        def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
+            return run_graph(
+                self.scenario, self.goal, pace, composed, self.folder, log.write, progress
+            )
+
+        return self._record(run)
+
+    def _record(self, run: Run) -> dict[str, Any]:
+        config = yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
+        (self.folder / "config.yaml").write_text(config, encoding="utf-8")
+        (self.folder / "vehicle.yaml").write_text(dump_vehicle(self.vehicle), encoding="utf-8")
+        line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
+        began = time.perf_counter()
+        completed = False
+        with LogWriter(self.folder / "run.mcap") as log:
+            self._describe(log, config)
+            try:
+                completed = run(log, line.show)
+            finally:
+                line.end()
+        wall = time.perf_counter() - began
+        return self._summarise(completed, wall)
+
+    def _describe(self, log: LogWriter, config: str) -> None:
+        log.attach("config.yaml", config, "application/yaml")
+        log.attach("vehicle.yaml", dump_vehicle(self.vehicle), "application/yaml")
+        if isinstance(self.goal, PathGoal):
+            log.attach("path.json", path_to_json(self.goal), "application/json")
+        log.metadata(
+            "uvms",
+            {
+                "scenario": self.scenario.scenario,
+                "seed": self.scenario.seed,
+                "git_revision": git_revision(),
+                "version": version("uvms_bringup"),
+                "pace": self.pace,
+                "command": self.command,
+            },
+        )
+
+    def _summarise(self, completed: bool, wall: float) -> dict[str, Any]:
+        summary = summarise(self.folder / "run.mcap", completed=completed, wall_s=wall)
+        text = json.dumps(summary, indent=2)
+        (self.folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+        return summary
+
+
+def prepare(scenario: Scenario, output: str | None, pace: str, command: str) -> Session:
+    """Load the vehicle, make the goal and the run's folder.
+
+    Raises:
+        RunError: the folder cannot be made, or it holds another run already.
+    """
+    vehicle = scenario.load_vehicle()
+    goal = scenario.goal.build(vehicle, scenario.plant)
+    folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
+    if (folder / "run.mcap").exists():
+        raise RunError(f"{folder} holds a run already; give another --output, or remove it")
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise RunError(f"--output {folder}: {fault.strerror}") from fault
+    return Session(scenario, vehicle, goal, folder.resolve(), pace, command)
+
+
+def git_revision() -> str:
+    """Revision of the sources in use, `unknown` outside a repository; `+` marks local changes."""
+    here = Path(__file__).resolve().parent
+    command = ["git", "-C", str(here), "describe", "--always", "--dirty=+", "--abbrev=12"]
+    try:
+        found = subprocess.run(command, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+    return found.stdout.strip()
+
+
+def _now() -> str:
+    return datetime.now(timezone.utc).strftime("%Y%m%dT%H%M%SZ")

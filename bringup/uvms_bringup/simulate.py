@@ -1,0 +1,87 @@
+"""`uvms simulate`: the closed loop in one process without ROS, logged as the graph's runs are."""
+
+from collections.abc import Callable
+
+from uvms_bringup.log.encode import SignalWriter
+from uvms_bringup.loop import Loop, LoopTick
+from uvms_bringup.scenario import Scenario
+from uvms_dynamics import Vehicle, diagnostics, topics
+from uvms_dynamics.diagnostics import Status
+from uvms_dynamics.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
+
+Progress = Callable[[int, str], None]
+
+
+def simulate(
+    scenario: Scenario,
+    vehicle: Vehicle,
+    goal: PathGoal | JointGoal | None,
+    log: SignalWriter | None = None,
+    progress: Progress = lambda stamp, text: None,
+    observe: Callable[[LoopTick], None] = lambda tick: None,
+) -> bool:
+    """Run a scenario; True if it came to its end.
+
+    Args:
+        goal: what the planner is asked for, once the loop is closed at the first tick.
+        log: where every signal goes, None for nowhere.
+        progress: called with the stamp in ns and a line of text, at each tick.
+        observe: called with every tick.
+
+    Raises:
+        GoalRejected: the planner cannot follow the goal.
+        PlantDiverged: the state is not finite any more.
+    """
+    loop = Loop(scenario, vehicle)
+    end = to_nanoseconds(scenario.duration_s)
+    succeeded = True
+    while True:
+        tick = loop.tick()
+        if log is not None:
+            write_tick(log, tick)
+        observe(tick)
+        progress(tick.stamp, "")
+        if tick.plan is not None and tick.plan.finished is not None:
+            succeeded = tick.plan.finished.success
+        if tick.stamp >= end:
+            return succeeded
+        if tick.stamp == 0 and goal is not None:
+            loop.planner.accept(goal)
+        loop.advance(tick)
+
+
+def write_tick(log: SignalWriter, tick: LoopTick) -> None:
+    """Every message that the graph publishes in this tick."""
+    sensors, truth = tick.sensors, tick.truth
+    log.write(topics.CLOCK, tick.stamp)
+    log.write(topics.TRUE_ODOMETRY, truth.odometry)
+    log.write(topics.TRUE_JOINT_STATES, truth.joints)
+    log.write(topics.TRUE_DISTURBANCE, truth.disturbance)
+    log.write(topics.JOINT_STATES, sensors.joints)
+    for topic, samples in (
+        (topics.DVL, sensors.dvl),
+        (topics.PRESSURE, sensors.pressure),
+        (topics.GPS, sensors.gps),
+        (topics.IMU, sensors.imu),
+    ):
+        for sample in samples:
+            log.write(topic, sample)
+    log.write(topics.ODOMETRY, tick.odometry)
+    log.write(topics.DISTURBANCE, tick.disturbance)
+    log.write(topics.DISTURBANCE_BUDGET, tick.budget)
+    log.write(topics.WRENCH_COMMAND, tick.wrench)
+    log.write(topics.JOINT_COMMAND, tick.joint_command)
+    log.write(topics.THRUSTER_COMMAND, tick.thruster_command)
+    log.write(topics.WRENCH_ACHIEVED, Wrench(tick.stamp, tick.allocation.achieved))
+    log.write(topics.ALLOCATION, tick.allocation)
+    if tick.plan is not None:
+        _write_plan(log, tick)
+
+
+def _write_plan(log: SignalWriter, tick: LoopTick) -> None:
+    for reference in tick.plan.references:
+        log.write(topics.REFERENCE, reference, tick.stamp)
+    status = Status(
+        tick.stamp, "motion_planner", diagnostics.OK, "ok", {"step_ms": tick.plan_ms}
+    )
+    log.write(topics.DIAGNOSTICS, status)

@@ -1,0 +1,43 @@
+"""Node `controller`: S-surface plus dynamic law for the vehicle, S-surface law for the arm."""
+
+from uvms_control import ControlConfig, Controller
+from uvms_dynamics import topics
+from uvms_dynamics.gate import Covering, Same, Tick
+from uvms_dynamics.ros.node import UvmsNode
+from uvms_dynamics.ros.spin import main_of
+
+
+class ControllerNode(UvmsNode):
+    """odometry, joint_states, reference and disturbance in; wrench and joint command out."""
+
+    def __init__(self, **options) -> None:
+        super().__init__("controller", **options)
+        self._controller = Controller(self.vehicle, self.config(ControlConfig))
+        inputs = {
+            topics.ODOMETRY: Same(),
+            topics.JOINT_STATES: Same(),
+            topics.DISTURBANCE: Same(),
+            topics.REFERENCE: Covering(),
+        }
+        self.connect(inputs, topics.ODOMETRY, self._step)
+
+    def _step(self, tick: Tick) -> None:
+        if tick[topics.REFERENCE.name] is None or tick[topics.JOINT_STATES.name] is None:
+            return  # in real time: nothing to follow yet, and the plant keeps to its safe command
+        wrench, joints = self._controller.step(
+            tick[topics.ODOMETRY.name],
+            tick[topics.JOINT_STATES.name],
+            tick[topics.DISTURBANCE.name],
+            tick[topics.REFERENCE.name],
+        )
+        self.send(topics.WRENCH_COMMAND, wrench)
+        self.send(topics.JOINT_COMMAND, joints)
+
+
+def main(args=None) -> int:
+    """`ros2 run uvms_control controller`."""
+    return main_of(ControllerNode, __doc__, args)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

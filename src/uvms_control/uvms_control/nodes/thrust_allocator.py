@@ -1,0 +1,32 @@
+"""Node `thrust_allocator`: the commanded wrench as thrusts within their limits."""
+
+from uvms_control import AllocatorConfig, ThrustAllocator
+from uvms_dynamics import topics
+from uvms_dynamics.gate import Same, Tick
+from uvms_dynamics.ros.node import UvmsNode
+from uvms_dynamics.ros.spin import main_of
+from uvms_dynamics.signals import Wrench
+
+
+class ThrustAllocatorNode(UvmsNode):
+    """wrench_command in; thruster_command, wrench_achieved and allocation out."""
+
+    def __init__(self, **options) -> None:
+        super().__init__("thrust_allocator", **options)
+        self._allocator = ThrustAllocator(self.vehicle, self.config(AllocatorConfig))
+        self.connect({topics.WRENCH_COMMAND: Same()}, topics.WRENCH_COMMAND, self._step)
+
+    def _step(self, tick: Tick) -> None:
+        command, allocation = self._allocator.step(tick[topics.WRENCH_COMMAND.name])
+        self.send(topics.THRUSTER_COMMAND, command)
+        self.send(topics.WRENCH_ACHIEVED, Wrench(tick.stamp, allocation.achieved))
+        self.send(topics.ALLOCATION, allocation)
+
+
+def main(args=None) -> int:
+    """`ros2 run uvms_control thrust_allocator`."""
+    return main_of(ThrustAllocatorNode, __doc__, args)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

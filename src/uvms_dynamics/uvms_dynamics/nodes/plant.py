@@ -1,0 +1,193 @@
+"""Node `plant`: vehicle, arm, water and sensors; it owns time and publishes /clock."""
+
+import time
+
+from pydantic import Field
+from std_srvs.srv import SetBool, Trigger
+
+from uvms_dynamics import Plant, PlantConfig, diagnostics, topics
+from uvms_dynamics.config import Config
+from uvms_dynamics.ros.node import UvmsNode
+from uvms_dynamics.ros.spin import main_of
+from uvms_dynamics.signals import (
+    JointCommand,
+    ThrusterCommand,
+    to_nanoseconds,
+    to_seconds,
+)
+
+POLL = 0.05
+"""How often an idle plant looks whether all its peers are there, s of wall time."""
+
+
+class PaceConfig(Config):
+    """How the plant's time runs."""
+
+    realtime_factor: float = Field(
+        1.0, gt=0.0, le=1000.0, description="simulated seconds a wall second, at pace realtime"
+    )
+    timeout_s: float = Field(
+        5.0, gt=0.0, description="wall time that lockstep waits for a command, s"
+    )
+    first_timeout_s: float = Field(
+        60.0, gt=0.0, description="the same at the first tick, when nodes may still compile, s"
+    )
+    stale_s: float = Field(
+        0.5, gt=0.0, description="age at which realtime takes a command for missing, s"
+    )
+    duration_s: float = Field(0.0, ge=0.0, description="where the plant stops, s; 0: never")
+    auto_start: bool = Field(True, description="start by itself as soon as all nodes are there")
+    start_paused: bool = Field(False, description="close the loop at t = 0, then wait in pause")
+
+
+class PlantNode(UvmsNode):
+    """thruster_command and joint_command in; sensors, joint_states, ground truth and /clock out.
+
+    Services: `start` (begin, where `auto_start` is false) and `pause` (hold simulated time).
+    """
+
+    def __init__(self, **options) -> None:
+        super().__init__("plant", **options)
+        self._plant = Plant(self.vehicle, self.config(PlantConfig), self.seed)
+        self._pace = self.config(PaceConfig)
+        self._end = to_nanoseconds(self._pace.duration_s) or None
+        self._commands: dict[str, ThrusterCommand | JointCommand] = {}
+        self._running = False
+        self._paused = self._pace.start_paused
+        self._wanted = self._pace.auto_start
+        self._deadline = time.monotonic() + POLL
+        self._timeouts = 0
+        self.listen(topics.THRUSTER_COMMAND, lambda c: self._take("thruster_command", c))
+        self.listen(topics.JOINT_COMMAND, lambda c: self._take("joint_command", c))
+        self.create_service(Trigger, "start", self._answer_start)
+        self.create_service(SetBool, "pause", self._answer_pause)
+
+    def deadline(self) -> float | None:
+        """When the plant wants to be woken, in monotonic wall seconds."""
+        return self._deadline
+
+    def on_wake(self) -> None:
+        """The deadline passed: look for peers, or go on without the missing commands."""
+        if not self._running:
+            self._deadline = time.monotonic() + POLL
+            if self._wanted and not self.missing_peers():
+                self._start()
+        elif self.lockstep:
+            self._time_out()
+        else:
+            self._advance()
+
+    def _start(self) -> None:
+        self._running = True
+        self._publish_tick()
+        self._deadline = self._next_deadline(self._pace.first_timeout_s)
+
+    def _take(self, name: str, command: ThrusterCommand | JointCommand) -> None:
+        self._commands[name] = command
+        if self.lockstep and self._complete():
+            self._advance()
+
+    def _complete(self) -> bool:
+        return len(self._commands) == 2 and all(
+            command.stamp == self._plant.stamp for command in self._commands.values()
+        )
+
+    def _advance(self) -> None:
+        if not self._running or self._paused or self._finished:
+            self._deadline = None if self.lockstep else time.monotonic() + POLL
+            return
+        self.guard(lambda: self._plant.step(self._thrust(), self._effort()))
+        self._publish_tick()
+        self._deadline = self._next_deadline(self._pace.timeout_s)
+
+    def _publish_tick(self) -> None:
+        stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
+        self.send(topics.CLOCK, stamp)
+        self.send(topics.TRUE_ODOMETRY, truth.odometry)
+        self.send(topics.TRUE_JOINT_STATES, truth.joints)
+        self.send(topics.TRUE_DISTURBANCE, truth.disturbance)
+        self.send(topics.JOINT_STATES, sensors.joints)
+        for topic, samples in (
+            (topics.DVL, sensors.dvl),
+            (topics.PRESSURE, sensors.pressure),
+            (topics.GPS, sensors.gps),
+            (topics.IMU, sensors.imu),
+        ):
+            for sample in samples:
+                self.send(topic, sample)
+        self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
+
+    @property
+    def _finished(self) -> bool:
+        return self._end is not None and self._plant.stamp >= self._end
+
+    def _next_deadline(self, timeout: float) -> float:
+        if self.lockstep:
+            return time.monotonic() + timeout
+        period = to_seconds(self.period) / self._pace.realtime_factor
+        now = time.monotonic()
+        # Late by more than a few periods: the machine is too slow, so time does not pile up.
+        due = (self._deadline or now) + period
+        return due if due > now - 5.0 * period else now
+
+    def _time_out(self) -> None:
+        if self._paused or self._finished:
+            self._deadline = None
+            return
+        missing = [name for name in ("thruster_command", "joint_command") if self._stale(name)]
+        self._timeouts += 1
+        text = (
+            f"t = {to_seconds(self._plant.stamp):.2f} s: no {' and no '.join(missing)} in time; "
+            "going on with the safe command"
+        )
+        self.get_logger().warning(text)
+        self.report(
+            self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts
+        )
+        self._advance()
+
+    def _stale(self, name: str) -> bool:
+        command = self._commands.get(name)
+        allowed = 0 if self.lockstep else to_nanoseconds(self._pace.stale_s)
+        return command is None or self._plant.stamp - command.stamp > allowed
+
+    def _thrust(self) -> ThrusterCommand:
+        if self._stale("thruster_command"):
+            return self._plant.safe_thrust()
+        return self._commands["thruster_command"]
+
+    def _effort(self) -> JointCommand:
+        if self._stale("joint_command"):
+            return self._plant.safe_effort()
+        return self._commands["joint_command"]
+
+    def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        response.success, response.message = not self._running, "already running"
+        if not self._running:
+            response.message = "started"
+            self._start()
+        return response
+
+    def _answer_pause(self, request: SetBool.Request, response: SetBool.Response):
+        self._paused, response.success = request.data, True
+        response.message = f"paused at {to_seconds(self._plant.stamp):.2f} s"
+        if not request.data:
+            response.message = f"going on from {to_seconds(self._plant.stamp):.2f} s"
+            self._resume()
+        return response
+
+    def _resume(self) -> None:
+        if not self._running:
+            return
+        self._deadline = time.monotonic() + self._pace.first_timeout_s
+        if not self.lockstep or self._complete():
+            self._advance()
+
+
+def main(args=None) -> int:
+    """`ros2 run uvms_dynamics plant`."""
+    return main_of(PlantNode, __doc__, args)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,172 @@
+"""What the six nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
+
+from collections.abc import Callable, Mapping
+from typing import Any, TypeVar
+
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+from std_srvs.srv import Trigger
+
+from uvms_dynamics import diagnostics, topics
+from uvms_dynamics.config import Config
+from uvms_dynamics.diagnostics import Status
+from uvms_dynamics.errors import ConfigError, UvmsError
+from uvms_dynamics.gate import Input, Tick, TickGate
+from uvms_dynamics.messages import from_message, to_message
+from uvms_dynamics.ros.convert import message_class, to_ros
+from uvms_dynamics.ros.parameters import declare, declare_config
+from uvms_dynamics.signals import NANOSECONDS, to_nanoseconds
+from uvms_dynamics.topics import Qos, Topic
+from uvms_dynamics.vehicle import Vehicle, load_vehicle
+
+C = TypeVar("C", bound=Config)
+PACES = ("lockstep", "realtime")
+DIAGNOSTICS_PERIOD = NANOSECONDS
+NEEDED = frozenset(t for n in topics.NODES.values() for t in n.inputs) - {topics.CLOCK}
+"""Topics that some node of the loop reads: a run cannot start before somebody listens to them."""
+
+
+def qos_profile(qos: Qos) -> QoSProfile:
+    """The rclpy form of a topic's quality of service."""
+    durability = (
+        DurabilityPolicy.TRANSIENT_LOCAL if qos.transient_local else DurabilityPolicy.VOLATILE
+    )
+    return QoSProfile(
+        depth=qos.depth, reliability=ReliabilityPolicy.RELIABLE, durability=durability
+    )
+
+
+class UvmsNode(Node):
+    """A thin shell around a core class: parameters in, messages to signals, signals to messages.
+
+    A subclass makes its core in `__init__`, then calls `connect`. It keeps its last good state
+    when an input is refused: the fault is logged, counted and reported on /diagnostics.
+    """
+
+    def __init__(self, name: str, **options: Any) -> None:
+        super().__init__(name, **options)
+        path = declare(self, "vehicle_file", "", "vehicle file; empty: the reference vehicle")
+        self.vehicle: Vehicle = load_vehicle(path or None)
+        self.seed: int = declare(self, "seed", 1, "seed of this run's random numbers")
+        self.pace: str = declare(self, "pace", "lockstep", "lockstep (repeatable) or realtime")
+        if self.pace not in PACES:
+            raise ConfigError(f"{name}: pace is {self.pace!r}; choose one of {', '.join(PACES)}")
+        self.period = to_nanoseconds(
+            declare(self, "control_period_s", 0.05, "period of the control loop, s")
+        )
+        self._topics = topics.NODES[name]
+        self._outputs: dict[Topic, Publisher] = {}
+        self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
+        self._diagnostics = self._sender(topics.DIAGNOSTICS)
+        self._status = Status(0, name)
+        self._reported = -DIAGNOSTICS_PERIOD
+        self._refused = 0
+        self._gate: TickGate | None = None
+        self._receivers: dict[str, Any] = {}
+        self.create_service(Trigger, f"{name}/ready", self._answer_ready)
+
+    @property
+    def lockstep(self) -> bool:
+        """Whether the plant waits for this node's answers."""
+        return self.pace == "lockstep"
+
+    def config(self, model: type[C]) -> C:
+        """The node's configuration from its ROS parameters."""
+        return declare_config(self, model)
+
+    def connect(
+        self,
+        inputs: Mapping[Topic, Input],
+        trigger: Topic,
+        on_tick: Callable[[Tick], None],
+        in_loop: bool = True,
+        every: int = 1,
+    ) -> None:
+        """Subscribe to the inputs and call `on_tick` when those of one stamp are there.
+
+        `in_loop` and `every` are as in `TickGate`.
+        """
+        by_name = {topic.name: rule for topic, rule in inputs.items()}
+        self._gate = TickGate(by_name, trigger.name, self.lockstep, in_loop, every)
+        self._on_tick = on_tick
+        for topic in inputs:
+            self.listen(topic, lambda signal, topic=topic: self._admit(topic, signal))
+
+    def listen(self, topic: Topic, callback: Callable[[Any], None]) -> None:
+        """Subscribe; the callback gets checked signals, and its faults are reported."""
+        names = self.names_of(topic)
+
+        def receive(msg: Any) -> None:
+            self.guard(lambda: callback(from_message(topic, msg, names)))
+
+        self._receivers[topic.name] = self.create_subscription(
+            message_class(topic), topic.name, receive, qos_profile(topic.qos)
+        )
+
+    def send(self, topic: Topic, signal: Any) -> None:
+        """Publish a signal on its topic."""
+        self._senders[topic](signal)
+
+    def guard(self, action: Callable[[], None]) -> None:
+        """Run a step; an error of ours is reported and the node goes on with what it had."""
+        try:
+            action()
+        except UvmsError as fault:
+            self._refused += 1
+            self.get_logger().error(str(fault), throttle_duration_sec=1.0)
+            self.report(self._status.stamp, diagnostics.ERROR, str(fault))
+
+    def report(
+        self, stamp: int, level: int = diagnostics.OK, message: str = "ok", **values: Any
+    ) -> None:
+        """Publish this node's state on /diagnostics."""
+        gate = self._gate
+        counts = {"refused": self._refused}
+        if gate is not None:
+            counts |= {"abandoned_ticks": gate.abandoned, "late": gate.late}
+        self._status = Status(stamp, self.get_name(), level, message, counts | values)
+        self._diagnostics(self._status)
+        self._reported = stamp
+
+    def report_each_second(self, stamp: int, **values: Any) -> None:
+        """As `report`, at most once a second of simulation time."""
+        if stamp - self._reported >= DIAGNOSTICS_PERIOD:
+            self.report(stamp, **values)
+
+    def names_of(self, topic: Topic) -> tuple[str, ...]:
+        """Names that the topic's values come under: of thrusters or of joints."""
+        by_thruster = topic in (topics.THRUSTER_COMMAND, topics.ALLOCATION)
+        return self.vehicle.thruster_names if by_thruster else self.vehicle.joint_names
+
+    def missing_peers(self) -> list[str]:
+        """What this node still lacks before a run can start, in words."""
+        lacks = [
+            f"nobody publishes {name!r}"
+            for name, subscription in self._receivers.items()
+            if subscription.get_publisher_count() == 0
+        ]
+        return lacks + [
+            f"nobody subscribes to {topic.name!r}"
+            for topic in self._topics.outputs
+            if topic in NEEDED and self._outputs[topic].get_subscription_count() == 0
+        ]
+
+    def _admit(self, topic: Topic, signal: Any) -> None:
+        for tick in self._gate.push(topic.name, signal.stamp, signal):
+            self._status = Status(tick.stamp, self.get_name())
+            self._on_tick(tick)
+            self.report_each_second(tick.stamp)
+
+    def _sender(self, topic: Topic) -> Callable[[Any], None]:
+        cls, names = message_class(topic), self.names_of(topic)
+        publisher = self.create_publisher(cls, topic.name, qos_profile(topic.qos))
+        self._outputs[topic] = publisher
+        return lambda signal: publisher.publish(to_ros(cls, to_message(topic, signal, names)))
+
+    def _answer_ready(self, _: Any, response: Any) -> Any:
+        lacks = self.missing_peers()
+        response.success, response.message = not lacks, "; ".join(lacks)
+        return response
+
+

@@ -1,0 +1,86 @@
+"""ROS parameters derived from a configuration's fields: name, type, default, bounds, description."""
+
+from collections.abc import Iterator
+from typing import Any, TypeVar
+
+import annotated_types
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.node import Node
+
+from uvms_dynamics.config import Config, validated
+
+C = TypeVar("C", bound=Config)
+
+
+def declare(node: Node, name: str, default: Any, description: str) -> Any:
+    """Declare one parameter of the node itself and return its value."""
+    descriptor = ParameterDescriptor(description=description, read_only=True)
+    return node.declare_parameter(name, default, descriptor).value
+
+
+def declare_config(node: Node, model: type[C]) -> C:
+    """Declare every field of `model` (nested ones with dots) and return the validated values.
+
+    Raises:
+        ConfigError: a value is outside its bounds; the message names it and what is allowed.
+    """
+    values: dict[str, Any] = {}
+    for path, field, default in _leaves(model, model()):
+        name = ".".join(path)
+        if not node.has_parameter(name):
+            node.declare_parameter(name, _to_ros(default), _descriptor(field))
+        _store(values, path, node.get_parameter(name).value)
+    return validated(model, values, f"parameters of {node.get_name()}")
+
+
+def flatten(config: Config) -> dict[str, Any]:
+    """A configuration as ROS parameter names and values, for a parameter file."""
+    return {".".join(path): _to_ros(value) for path, _, value in _leaves(type(config), config)}
+
+
+def _leaves(
+    model: type[BaseModel], values: BaseModel, prefix: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], FieldInfo, Any]]:
+    for name, field in model.model_fields.items():
+        value = getattr(values, name)
+        if isinstance(value, BaseModel):
+            yield from _leaves(type(value), value, (*prefix, name))
+        else:
+            yield (*prefix, name), field, value
+
+
+def _to_ros(value: Any) -> Any:
+    if isinstance(value, (tuple, list)):
+        numbers = all(isinstance(item, (int, float)) for item in value)
+        return [float(item) if numbers else item for item in value]
+    return value
+
+
+def _descriptor(field: FieldInfo) -> ParameterDescriptor:
+    descriptor = ParameterDescriptor(description=field.description or "", read_only=True)
+    low, high = _bounds(field)
+    if low is not None and high is not None:
+        if field.annotation is float:
+            descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
+        elif field.annotation is int:
+            whole = IntegerRange(from_value=int(low), to_value=int(high), step=1)
+            descriptor.integer_range = [whole]
+    return descriptor
+
+
+def _bounds(field: FieldInfo) -> tuple[float | None, float | None]:
+    low = high = None
+    for item in field.metadata:
+        if isinstance(item, annotated_types.Ge):
+            low = float(item.ge)
+        if isinstance(item, annotated_types.Le):
+            high = float(item.le)
+    return low, high
+
+
+def _store(values: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
+    for part in path[:-1]:
+        values = values.setdefault(part, {})
+    values[path[-1]] = list(value) if hasattr(value, "tolist") or isinstance(value, tuple) else value

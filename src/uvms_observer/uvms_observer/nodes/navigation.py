@@ -1,0 +1,49 @@
+"""Node `navigation`: the extended Kalman filter on the sensors' topics."""
+
+from uvms_dynamics import topics
+from uvms_dynamics.gate import Periodic, Tick
+from uvms_dynamics.ros.node import UvmsNode
+from uvms_dynamics.ros.spin import main_of
+from uvms_dynamics.signals import to_nanoseconds
+from uvms_observer import NavigationConfig, NavigationFilter
+
+
+class NavigationNode(UvmsNode):
+    """sensors/* in, odometry out, once a control tick."""
+
+    def __init__(self, **options) -> None:
+        super().__init__("navigation", **options)
+        self._filter = NavigationFilter(self.vehicle, self.config(NavigationConfig))
+        sensors = self.vehicle.sensors
+        inputs = {
+            topics.IMU: Periodic(period_of(sensors.imu)),
+            topics.DVL: Periodic(period_of(sensors.dvl)),
+            topics.PRESSURE: Periodic(period_of(sensors.pressure)),
+            topics.GPS: Periodic(period_of(sensors.gps)),
+        }
+        self.connect(inputs, topics.IMU, self._step, every=self.period)
+
+    def _step(self, tick: Tick) -> None:
+        odometry = self._filter.step(
+            tick.stamp,
+            tick[topics.IMU.name],
+            tick[topics.DVL.name],
+            tick[topics.PRESSURE.name],
+            tick[topics.GPS.name],
+        )
+        self.send(topics.ODOMETRY, odometry)
+        self.report_each_second(tick.stamp, **self._filter.status())
+
+
+def period_of(sensor) -> int:
+    """Nanoseconds between two samples of a sensor of the vehicle file."""
+    return to_nanoseconds(1.0 / sensor.rate_hz)
+
+
+def main(args=None) -> int:
+    """`ros2 run uvms_observer navigation`."""
+    return main_of(NavigationNode, __doc__, args)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -1,0 +1,118 @@
+"""Node `motion_planner`: plans vehicle and joints every step; serves the two path actions."""
+
+import time
+from typing import Any
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.task import Future
+
+from uvms_dynamics import diagnostics, topics
+from uvms_dynamics.errors import UvmsError
+from uvms_dynamics.gate import Same, Tick
+from uvms_dynamics.messages import from_message
+from uvms_dynamics.ros.convert import action_class
+from uvms_dynamics.ros.node import UvmsNode
+from uvms_dynamics.ros.spin import main_of
+from uvms_dynamics.signals import NANOSECONDS, to_nanoseconds
+from uvms_dynamics.topics import Action
+from uvms_planner import MotionPlanner, PlannerConfig, PlannerStep
+
+
+class MotionPlannerNode(UvmsNode):
+    """odometry and joint_states in, reference out, every planner step.
+
+    Actions: `follow_end_effector_path` and `follow_joint_trajectory`, one goal at a time. A goal
+    that cannot be followed is rejected; the reason is logged and stands on /diagnostics.
+    """
+
+    def __init__(self, **options) -> None:
+        super().__init__("motion_planner", **options)
+        config = self.config(PlannerConfig)
+        self._planner = MotionPlanner(self.vehicle, config, self.seed)
+        self._handle: ServerGoalHandle | None = None
+        self._outcome: Future | None = None
+        self._stamp = 0
+        self._servers = [self._serve(action) for action in topics.ACTIONS]
+        inputs = {topics.ODOMETRY: Same(), topics.JOINT_STATES: Same()}
+        step = to_nanoseconds(config.step_s)
+        self.connect(inputs, topics.ODOMETRY, self._step, in_loop=False, every=step)
+
+    def _step(self, tick: Tick) -> None:
+        began = time.perf_counter()
+        plan = self._planner.step(
+            tick.stamp, tick[topics.ODOMETRY.name], tick[topics.JOINT_STATES.name]
+        )
+        elapsed_ms = 1e3 * (time.perf_counter() - began)
+        for reference in plan.references:
+            self.send(topics.REFERENCE, reference)
+        self._stamp = tick.stamp
+        self._tell(plan)
+        self.report(tick.stamp, step_ms=elapsed_ms, **plan.diagnostics())
+
+    def _tell(self, plan: PlannerStep) -> None:
+        if self._handle is None:
+            return
+        if plan.feedback is not None:
+            self._handle.publish_feedback(_filled(self._type.Feedback(), plan.feedback))
+        if plan.finished is not None and self._outcome is not None:
+            self._outcome.set_result(plan.finished)
+
+    def _serve(self, action: Action) -> ActionServer:
+        cls = action_class(action)
+        return ActionServer(
+            self,
+            cls,
+            action.name,
+            execute_callback=self._execute,
+            goal_callback=lambda goal: self._admit_goal(action, goal),
+            handle_accepted_callback=lambda handle: self._begin(cls, handle),
+            cancel_callback=self._cancel,
+        )
+
+    def _admit_goal(self, action: Action, goal: Any) -> GoalResponse:
+        try:
+            self._planner.accept(from_message(action, goal, self.vehicle.joint_names))
+        except UvmsError as fault:
+            self.get_logger().error(f"goal rejected: {fault}")
+            self.report(self._stamp, diagnostics.ERROR, str(fault))
+            return GoalResponse.REJECT
+        return GoalResponse.ACCEPT
+
+    def _begin(self, cls: type, handle: ServerGoalHandle) -> None:
+        self._type, self._handle, self._outcome = cls, handle, Future()
+        handle.execute()
+
+    def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        self._planner.cancel()
+        return CancelResponse.ACCEPT
+
+    async def _execute(self, handle: ServerGoalHandle) -> Any:
+        finished = await self._outcome
+        if handle.is_cancel_requested:
+            handle.canceled()
+        elif finished.success:
+            handle.succeed()
+        else:
+            handle.abort()
+        self._handle = None
+        return _filled(self._type.Result(), finished)
+
+
+def _filled(msg: Any, source: Any) -> Any:
+    for name in msg.get_fields_and_field_types():
+        value = getattr(source, name)
+        if name == "stamp":
+            msg.stamp.sec, msg.stamp.nanosec = divmod(value, NANOSECONDS)
+        else:
+            setattr(msg, name, value)
+    return msg
+
+
+def main(args=None) -> int:
+    """`ros2 run uvms_planner motion_planner`."""
+    return main_of(MotionPlannerNode, __doc__, args)
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
