@@ -57,7 +57,7 @@ class Stage:
     def run(self, command, env, cwd=None):
         """Run the command to its end; if it fails, raise SetupError with the end of its output."""
         command = [str(part) for part in command]
-        last = deque(maxlen=400)
+        last: deque = deque(maxlen=400)
         with open(str(self._log), "a") as log:
             log.write("\n$ %s\n" % " ".join(command))
             with subprocess.Popen(
@@ -65,7 +65,7 @@ class Stage:
                 stdout=subprocess.PIPE, stderr=subprocess.STDOUT, universal_newlines=True,
                 errors="replace",
             ) as process:  # fmt: skip
-                for line in process.stdout:
+                for line in process.stdout or ():
                     log.write(line)
                     last.append(line.rstrip())
                     self._show(line)

@@ -1,0 +1,58 @@
+"""ROS stays in the shells, and packages depend downwards only."""
+
+import pytest
+from project import PACKAGES, ROOT, imports, modules
+
+ROS = {"rclpy", "builtin_interfaces", "rosidl_runtime_py", "std_srvs", "ament_index_python"}
+SHELLS = {"nodes", "ros"}
+# What a package may import besides itself; uvms_msgs is for its shells.
+MAY_IMPORT = {
+    "uvms_dynamics": set(),
+    "uvms_observer": {"uvms_dynamics"},
+    "uvms_planner": {"uvms_dynamics"},
+    "uvms_control": {"uvms_dynamics"},
+    "uvms_bringup": {"uvms_dynamics", "uvms_observer", "uvms_planner", "uvms_control"},
+}
+
+
+def is_ros(name):
+    return name in ROS or name.endswith("_msgs")
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_only_nodes_and_ros_folders_import_ros(package):
+    core = [file for file in modules(package) if not SHELLS & set(file.parts)]
+    assert core
+    leaks = {
+        str(file.relative_to(ROOT)): sorted(filter(is_ros, imports(file)))
+        for file in core
+        if any(map(is_ros, imports(file)))
+    }
+    assert leaks == {}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_packages_depend_downwards_only(package):
+    own = set(PACKAGES) - MAY_IMPORT[package] - {package}
+    upward = {
+        str(file.relative_to(ROOT)): sorted(own.intersection(imports(file)))
+        for file in modules(package)
+        if own.intersection(imports(file))
+    }
+    assert upward == {}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_cores_use_no_global_random_state_and_no_clock(package):
+    """Randomness and time are arguments, or runs could not be repeated."""
+    if package == "uvms_bringup":
+        forbidden = {"random"}
+    else:
+        forbidden = {"random", "time", "datetime"}
+    core = [file for file in modules(package) if not SHELLS & set(file.parts)]
+    users = {
+        str(file.relative_to(ROOT)): sorted(forbidden.intersection(imports(file)))
+        for file in core
+        if forbidden.intersection(imports(file))
+    }
+    assert users == {}

@@ -1,0 +1,101 @@
+"""The packages describe themselves alike to ROS and to pip, and what they promise is there."""
+
+import ast
+import xml.etree.ElementTree as ElementTree
+
+import pytest
+from project import CODE, INTERFACES, PACKAGES, ROOT, imports, modules, python_files
+
+LONGEST = 400
+EXECUTABLES = {
+    "uvms_dynamics": {"plant"},
+    "uvms_observer": {"navigation", "disturbance_observer"},
+    "uvms_planner": {"motion_planner"},
+    "uvms_control": {"controller", "thrust_allocator"},
+    "uvms_bringup": {"uvms"},
+}
+
+
+def setup_arguments(folder):
+    """Keyword arguments of setup() that are written as constants, and PACKAGE as `name`."""
+    tree = ast.parse((folder / "setup.py").read_text())
+    call = next(
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "setup"
+    )
+    constants = {}
+    for keyword in call.keywords:
+        try:
+            constants[keyword.arg] = ast.literal_eval(keyword.value)
+        except ValueError:
+            continue
+    return constants
+
+
+def manifest(folder):
+    return ElementTree.parse(folder / "package.xml").getroot()
+
+
+def test_all_packages_have_one_version():
+    versions = {folder.name: manifest(folder).findtext("version") for folder in PACKAGES.values()}
+    versions["uvms_msgs"] = manifest(INTERFACES).findtext("version")
+    versions |= {
+        f"{folder.name}/setup.py": setup_arguments(folder)["version"]
+        for folder in PACKAGES.values()
+    }
+    assert len(set(versions.values())) == 1, versions
+
+
+@pytest.mark.parametrize(("package", "folder"), PACKAGES.items())
+def test_manifest_and_setup_agree(package, folder):
+    xml, arguments = manifest(folder), setup_arguments(folder)
+    assert xml.findtext("name") == package
+    assert xml.findtext("description") == arguments["description"]
+    assert xml.findtext("license") == arguments["license"] == "Apache-2.0"
+    assert xml.findtext("export/build_type") == "ament_python"
+    assert (folder / "resource" / package).is_file()
+    assert f"install_scripts=$base/lib/{package}" in (folder / "setup.cfg").read_text()
+
+
+@pytest.mark.parametrize(("package", "folder"), PACKAGES.items())
+def test_executables_name_modules_that_have_a_main(package, folder):
+    scripts = dict(
+        entry.split(" = ") for entry in setup_arguments(folder)["entry_points"]["console_scripts"]
+    )
+    assert set(scripts) == EXECUTABLES[package]
+    for target in scripts.values():
+        module, function = target.split(":")
+        source = (folder / module.replace(".", "/")).with_suffix(".py")
+        defined = {
+            node.name for node in ast.parse(source.read_text()).body if hasattr(node, "name")
+        }
+        assert function in defined, f"{source} has no {function}()"
+
+
+@pytest.mark.parametrize(("package", "folder"), PACKAGES.items())
+def test_manifest_names_every_ros_package_that_the_code_imports(package, folder):
+    named = {item.text for item in manifest(folder).iter() if item.tag.endswith("depend")}
+    ros = {
+        name
+        for file in modules(package)
+        for name in imports(file)
+        if name.endswith("_msgs") or name.startswith("uvms_") or name in ("rclpy", "std_srvs")
+    }
+    assert ros - {package} <= named
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_every_folder_with_code_is_a_package(package):
+    """find_packages skips folders without __init__.py, and an installation would lack them."""
+    folders = {file.parent for file in modules(package)}
+    assert [str(folder) for folder in folders if not (folder / "__init__.py").is_file()] == []
+
+
+def test_files_stay_short():
+    lengths = {
+        str(file.relative_to(ROOT)): len(file.read_text(encoding="utf-8").splitlines())
+        for file in python_files()
+    }
+    assert len(lengths) > 30, CODE
+    assert {name: length for name, length in lengths.items() if length >= LONGEST} == {}
