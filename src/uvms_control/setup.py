@@ -20,6 +20,7 @@ setup(
         "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
+        "scipy>=1.11",
         "uvms_dynamics",
     ],
     zip_safe=False,

@@ -10,6 +10,7 @@ from uvms_dynamics.rotations import (
     quat_multiply,
     quat_to_matrix,
     quat_to_rotation_vector,
+    skew,
 )
 from uvms_dynamics.signals import Array, Odometry
 
@@ -39,8 +40,8 @@ def tracking_error(odometry: Odometry, desired: ReferenceSample) -> TrackingErro
     position = R_world_body.T @ (desired.position - odometry.position)
     v, omega = R_body_desired @ desired.nu[:3], R_body_desired @ desired.nu[3:]
     slip = omega - odometry.nu[3:]
-    linear = R_body_desired @ desired.nu_dot[:3] + np.cross(slip, v)
-    angular = R_body_desired @ desired.nu_dot[3:] + np.cross(slip, omega)
+    linear = R_body_desired @ desired.nu_dot[:3] + skew(slip) @ v
+    angular = R_body_desired @ desired.nu_dot[3:] + skew(slip) @ omega
     return TrackingError(
         error=np.concatenate((position, quat_to_rotation_vector(turn))),
         rate=np.concatenate((v, omega)) - odometry.nu,
