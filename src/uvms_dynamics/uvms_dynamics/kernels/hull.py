@@ -1,0 +1,41 @@
+"""Forces on the hull that depend on its velocity through the water."""
+
+import math
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics.kernels.spatial import gyroscopic
+
+
+@njit(cache=True)
+def hull_bias_wrench(model, nu_r):
+    """C(nu_r) nu_r + D(nu_r) nu_r (6,) of the hull alone, rigid body and added mass together.
+
+    nu_r (6,) is the velocity relative to the water, body frame. Section 2.2 of the paper.
+    """
+    out = np.empty(6)
+    out[0], out[1], out[2], out[3], out[4], out[5] = hull_bias(
+        model, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
+    )
+    return out
+
+
+@njit(cache=True)
+def hull_bias(model, u, v, w, p, q, r):
+    """The same in scalars."""
+    f0, f1, f2, n0, n1, n2 = gyroscopic(model.inertia, 0, u, v, w, p, q, r)
+    return (
+        f0 + damping(model, 0, u),
+        f1 + damping(model, 1, v),
+        f2 + damping(model, 2, w),
+        n0 + damping(model, 3, p),
+        n1 + damping(model, 4, q),
+        n2 + damping(model, 5, r),
+    )
+
+
+@njit(cache=True)
+def damping(model, k, x):
+    """Linear and quadratic damping of one degree of freedom: (d_k + d_kk |x|) x."""
+    return (model.linear_damping[k] + model.quadratic_damping[k] * math.fabs(x)) * x
