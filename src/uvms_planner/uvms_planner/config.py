@@ -1,0 +1,127 @@
+"""Every parameter of the motion planner, once, with unit, bound and meaning."""
+
+from typing import Literal
+
+from pydantic import Field
+
+from uvms_dynamics.config import Config
+
+Method = Literal["genetic", "least_norm", "arm_only"]
+
+
+class LimitsConfig(Config):
+    """How far the plan may move in a step; the vehicle file's joint limits hold besides."""
+
+    translation_rate_m_s: float = Field(
+        0.05, gt=0, le=2.0, description="m/s, planned speed of the vehicle along each world axis"
+    )
+    translation_acceleration_m_s2: float = Field(
+        0.01, gt=0, le=2.0, description="m/s^2, planned acceleration of the vehicle along each axis"
+    )
+    yaw_rate_deg_s: float = Field(
+        1.0, gt=0, le=45.0, description="deg/s, planned turning rate of the vehicle"
+    )
+    yaw_acceleration_deg_s2: float = Field(
+        0.5, gt=0, le=45.0, description="deg/s^2, planned turning acceleration of the vehicle"
+    )
+    base_joint_rate_deg_s: float = Field(
+        4.0, gt=0, le=180.0, description="deg/s, planned rate of joint 1: 2 deg a step of 0.5 s"
+    )
+    joint_rate_fraction: float = Field(
+        0.4, gt=0, le=1.0, description="planned joint rate over the vehicle file's limit"
+    )
+    joint_acceleration_fraction: float = Field(
+        0.4, gt=0, le=1.0, description="planned joint acceleration over the vehicle file's limit"
+    )
+    joint_margin_deg: float = Field(
+        2.0, ge=0, le=30.0, description="deg, distance that the plan keeps from each joint limit"
+    )
+    depth_min_m: float = Field(
+        0.4, ge=0, le=1000.0, description="m, least planned depth of the vehicle's origin"
+    )
+    depth_max_m: float = Field(
+        1000.0, gt=0, le=12000.0, description="m, greatest planned depth of the vehicle's origin"
+    )
+    roll_max_deg: float = Field(
+        5.0, gt=0, le=90.0, description="deg, roll that the vehicle may take up freely, eq. (17)"
+    )
+    pitch_max_deg: float = Field(
+        4.0, gt=0, le=90.0, description="deg, pitch that the vehicle may take up freely, eq. (17)"
+    )
+
+
+class ProjectionConfig(Config):
+    """How a candidate is brought onto the end effector's path."""
+
+    position_tolerance_m: float = Field(
+        1e-3, gt=0, le=0.1, description="m, e of eq. (17): candidates farther off are discarded"
+    )
+    orientation_tolerance_deg: float = Field(
+        0.5, gt=0, le=30.0, description="deg, the same for the orientation, where a goal has one"
+    )
+    iterations: int = Field(8, ge=1, le=100, description="Newton steps at most")
+    damping: float = Field(
+        1e-3, ge=0, le=1.0, description="damping of the pseudo-inverse, in per-step ranges"
+    )
+    vehicle_share: float = Field(
+        0.5, gt=0, le=1e3, description="readiness of the vehicle to move against the joints'"
+    )
+
+
+class FitnessConfig(Config):
+    """What makes a candidate good; with all three numbers zero it is eq. (18) as printed."""
+
+    lookahead_s: float = Field(
+        3.0, ge=0, le=60.0, description="s, restoring wrench where the arm's motion leads in this"
+    )
+    smoothness_weight: float = Field(
+        0.02, ge=0, description="N^2 (or N^2 m^2) for a change of rate of one full acceleration"
+    )
+    vehicle_motion_weight: float = Field(
+        0.2, ge=0, description="N^2 (or N^2 m^2) for the vehicle moving at its full rate"
+    )
+    joint_motion_weight: float = Field(
+        0.02, ge=0, description="N^2 (or N^2 m^2) for a joint moving at its full rate"
+    )
+
+
+class GeneticConfig(Config):
+    """The genetic algorithm."""
+
+    population: int = Field(40, ge=8, le=10000, description="individuals of a generation")
+    generations: int = Field(15, ge=1, le=10000, description="generations of a step")
+    bits_per_variable: int = Field(
+        16, ge=2, le=52, description="bits of each gene (the paper: 1000 for the whole chromosome)"
+    )
+    crossover_rate: float = Field(0.8, ge=0, le=1, description="share of pairs that cross over")
+    mutation_rate: float = Field(0.02, ge=0, le=1, description="probability that a bit flips")
+    elite: int = Field(2, ge=1, le=8, description="best individuals that live on unchanged")
+    refinements: int = Field(
+        3, ge=0, le=50, description="Gauss-Newton steps that polish the best individual"
+    )
+
+
+class PlannerConfig(Config):
+    """The motion planner."""
+
+    method: Method = Field(
+        "genetic",
+        description="genetic (the paper's), least_norm (weighted pseudo-inverse) or arm_only",
+    )
+    step_s: float = Field(0.5, gt=0, le=10.0, description="s, one planner step")
+    sample_s: float = Field(0.05, gt=0, le=1.0, description="s, spacing of the reference's samples")
+    start_tolerance_m: float = Field(
+        0.1, gt=0, le=1.0, description="m, a path may begin this far from the end effector"
+    )
+    start_tolerance_deg: float = Field(
+        20.0, gt=0, le=180.0, description="deg, the same for the first orientation"
+    )
+    approach_s: float = Field(
+        10.0, gt=0, le=600.0, description="s, in which the tool joins a path that begins beside it"
+    )
+    limits: LimitsConfig = Field(LimitsConfig(), description="limits of the planned motion")
+    projection: ProjectionConfig = Field(
+        ProjectionConfig(), description="precision, eq. (12), (17)"
+    )
+    fitness: FitnessConfig = Field(FitnessConfig(), description="fitness, eq. (18)")
+    genetic: GeneticConfig = Field(GeneticConfig(), description="genetic algorithm, Fig. 3")

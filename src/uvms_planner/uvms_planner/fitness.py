@@ -1,0 +1,82 @@
+"""The fitness of a candidate, eq. (18): the smaller the self-disturbance, the fitter."""
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics import coupling_wrench, restoring_wrench
+from uvms_planner.constraints import attitude_violation
+from uvms_planner.problem import VEHICLE, yaw_quaternion
+from uvms_planner.projection import project, within_tolerance
+
+
+@njit(cache=True)
+def body_motion(problem, increment):
+    """Nu (6,) and nu_dot (6,), body frame, that an increment means for the level vehicle.
+
+    Rates are the increment over the step, accelerations its change from the step before:
+    nu = R^T p_dot, nu_dot = R^T p_ddot - omega x nu.
+    """
+    h = problem.step
+    yaw = problem.configuration[3] + increment[3]
+    c, s = np.cos(yaw), np.sin(yaw)
+    nu, nu_dot = np.zeros(6), np.zeros(6)
+    x, y = increment[0] / h, increment[1] / h
+    nu[0], nu[1], nu[2] = c * x + s * y, -s * x + c * y, increment[2] / h
+    nu[5] = increment[3] / h
+    x = (increment[0] - problem.previous[0]) / h**2
+    y = (increment[1] - problem.previous[1]) / h**2
+    nu_dot[0] = c * x + s * y + nu[5] * nu[1]
+    nu_dot[1] = -s * x + c * y - nu[5] * nu[0]
+    nu_dot[2] = (increment[2] - problem.previous[2]) / h**2
+    nu_dot[5] = (increment[3] - problem.previous[3]) / h**2
+    return nu, nu_dot
+
+
+@njit(cache=True)
+def self_disturbance(model, problem, increment, lookahead):
+    """F_dis (6,) of eq. (16) for a candidate: restoring plus coupling wrench, body frame.
+
+    The restoring wrench is taken where the joints would be `lookahead` s after the step if they
+    kept their rate; the coupling wrench at the step, in still water.
+    """
+    h = problem.step
+    nu, nu_dot = body_motion(problem, increment)
+    q = problem.configuration[VEHICLE:] + increment[VEHICLE:]
+    q_dot = increment[VEHICLE:] / h
+    q_ddot = (increment[VEHICLE:] - problem.previous[VEHICLE:]) / h**2
+    level = yaw_quaternion(problem.configuration[3] + increment[3])
+    wrench = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
+    restoring = restoring_wrench(model, level, q + lookahead * q_dot)
+    for i in range(6):
+        wrench[i] += restoring[i]
+    return wrench
+
+
+@njit(cache=True)
+def cost(model, problem, increment):
+    """Sum of F_dis squared, eq. (18), plus what the motion and its change of rate cost."""
+    wrench = self_disturbance(model, problem, increment, problem.lookahead)
+    total = 0.0
+    for i in range(6):
+        total += wrench[i] ** 2
+    for i in range(increment.shape[0]):
+        if problem.reach[i] > 0.0:
+            change = (increment[i] - problem.previous[i]) / problem.jump[i]
+            total += problem.smoothness_weight * change**2
+            total += problem.motion_weights[i] * (increment[i] / problem.reach[i]) ** 2
+    return total
+
+
+@njit(cache=True)
+def judge(model, problem, increment):
+    """Project `increment` (m,) in place; return (valid, attitude violation in rad, cost).
+
+    A candidate whose end-effector error is not below e is not valid and is discarded, eq. (17).
+    """
+    distance, angle = project(model, problem, increment)
+    if not within_tolerance(problem, distance, angle):
+        return False, np.inf, np.inf
+    violation = attitude_violation(
+        model, problem, problem.configuration[VEHICLE:] + increment[VEHICLE:]
+    )
+    return True, violation, cost(model, problem, increment)

@@ -1,0 +1,174 @@
+"""Clear rejections of paths that are malformed or cannot be followed."""
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics.rotations import quat_to_matrix
+from uvms_dynamics.signals import Array, PathGoal
+from uvms_planner.config import PlannerConfig
+from uvms_planner.errors import GoalRejected
+from uvms_planner.path import EndEffectorPath, JoinedPath
+from uvms_planner.projection import project, within_tolerance
+from uvms_planner.solver import StepSolver
+
+UNIT_TOLERANCE = 1e-3
+SEARCH_ITERATIONS = 200
+
+
+def check_path_goal(goal: PathGoal) -> None:
+    """Raise GoalRejected if times, positions or orientations are malformed or above the water."""
+    times, positions = np.asarray(goal.times), np.asarray(goal.positions)
+    orientations = np.asarray(goal.orientations)
+    _check_shapes(times, positions, orientations)
+    for name, values in (
+        ("times", times),
+        ("positions", positions),
+        ("orientations", orientations),
+    ):
+        if not np.all(np.isfinite(values)):
+            row = int(np.argwhere(~np.isfinite(values))[0][0])
+            raise GoalRejected(f"path: {name}[{row}] = {values[row]} is not finite")
+    if times[0] != 0.0:
+        raise GoalRejected(f"path: the first time is {times[0]:g} s, must be 0")
+    if np.any(np.diff(times) <= 0.0):
+        row = int(np.argmax(np.diff(times) <= 0.0)) + 1
+        raise GoalRejected(
+            f"path: times must increase; times[{row}] = {times[row]:g} s after {times[row - 1]:g} s"
+        )
+    if np.min(positions[:, 2]) < 0.0:
+        row = int(np.argmax(positions[:, 2] < 0.0))
+        raise GoalRejected(
+            f"path: at t = {times[row]:g} s it is {-positions[row, 2]:g} m above the surface"
+            " (z is down, must be >= 0)"
+        )
+    if len(orientations):
+        norms = np.linalg.norm(orientations, axis=1)
+        row = int(np.argmax(np.abs(norms - 1.0)))
+        if abs(norms[row] - 1.0) > UNIT_TOLERANCE:
+            raise GoalRejected(
+                f"path: orientations[{row}] has norm {norms[row]:.4g}, must be a unit quaternion"
+            )
+
+
+def _check_shapes(times: Array, positions: Array, orientations: Array) -> None:
+    count = len(times) if times.ndim == 1 else 0
+    if count < 2 or positions.shape != (count, 3):
+        raise GoalRejected(
+            f"path: times has shape {times.shape} and positions {positions.shape};"
+            " needed are (k,) and (k, 3) with k >= 2"
+        )
+    if orientations.shape not in ((0, 4), (count, 4)):
+        raise GoalRejected(
+            f"path: orientations has shape {orientations.shape}; needed is ({count}, 4), or (0, 4)"
+            " for none"
+        )
+
+
+def check_start(goal: PathGoal, position: Array, quaternion: Array, config: PlannerConfig) -> None:
+    """Raise GoalRejected where the goal begins too far from the tool's pose."""
+    gap = float(np.linalg.norm(goal.positions[0] - position))
+    if gap > config.start_tolerance_m:
+        raise GoalRejected(
+            f"path: its first point is {gap:.4g} m from the end effector, allowed"
+            f" {config.start_tolerance_m:g} m; the end effector is at ({_numbers(position)}) m"
+        )
+    if not len(goal.orientations):
+        return
+    turn = _angle_between(goal.orientations[0], quaternion)
+    if turn > np.deg2rad(config.start_tolerance_deg):
+        raise GoalRejected(
+            f"path: its first orientation is {np.rad2deg(turn):.4g} deg from the end"
+            f" effector's, allowed {config.start_tolerance_deg:g} deg; the end effector's is"
+            f" ({_numbers(quaternion)})"
+        )
+
+
+def check_reachable(
+    path: EndEffectorPath | JoinedPath, solver: StepSolver, configuration: Array, step: float
+) -> None:
+    """Raise GoalRejected if the path leaves what the vehicle and arm can do, saying when.
+
+    The path is gone through with the projection alone, from `configuration` (m,), within the rate
+    and joint limits of every planner step.
+    """
+    count = max(1, int(np.ceil(path.duration / step)))
+    times = np.minimum(np.arange(1, count + 1) * step, path.duration)
+    targets = [path.sample(float(time)) for time in times]
+    positions = np.array([target.position for target in targets])
+    rotations = np.zeros((0, 3, 3))
+    if path.oriented:
+        rotations = np.array([quat_to_matrix(target.quaternion) for target in targets])
+    still = np.zeros_like(configuration)
+    bounds = solver.limits.rate_increments(configuration)
+    problem = solver.problem(configuration, still, targets[0], bounds)
+    frozen = problem.upper <= problem.lower
+    limits = solver.limits
+    index, distance, angle = go_along(
+        solver.model, problem, positions, rotations, limits.lower, limits.upper, frozen
+    )
+    if index < 0:
+        return
+    _reject(path, float(times[index]), problem, solver, distance, angle, frozen)
+
+
+@njit(cache=True)
+def go_along(model, problem, positions, rotations, lower, upper, frozen):
+    """Project step by step along `positions` (k, 3); `problem`'s arrays are left where it failed.
+
+    Returns the index of the first point that is not within e, with (m, rad) errors; -1 if none.
+    """
+    increment = np.zeros_like(problem.configuration)
+    for index in range(positions.shape[0]):
+        for i in range(increment.shape[0]):
+            room_up = max(upper[i] - problem.configuration[i], 0.0)
+            room_down = max(problem.configuration[i] - lower[i], 0.0)
+            problem.upper[i] = 0.0 if frozen[i] else min(problem.reach[i], room_up)
+            problem.lower[i] = 0.0 if frozen[i] else -min(problem.reach[i], room_down)
+            increment[i] = 0.0
+        problem.position[:] = positions[index]
+        if problem.oriented:
+            problem.rotation[:] = rotations[index]
+        distance, angle = project(model, problem, increment)
+        if not within_tolerance(problem, distance, angle):
+            return index, distance, angle
+        problem.configuration[:] += increment
+    return -1, 0.0, 0.0
+
+
+def _reject(path, time, problem, solver, distance, angle, frozen):
+    """Say whether the rates or the reach are too small at `time`, and by how much."""
+    lower = np.where(frozen, 0.0, np.minimum(solver.limits.lower - problem.configuration, 0.0))
+    upper = np.where(frozen, 0.0, np.maximum(solver.limits.upper - problem.configuration, 0.0))
+    roomy = problem._replace(lower=lower, upper=upper, iterations=SEARCH_ITERATIONS)
+    far, turned = project(solver.model, roomy, np.zeros_like(problem.configuration))
+    if within_tolerance(problem, far, turned):
+        speed = float(np.linalg.norm(path.sample(time).velocity))
+        raise GoalRejected(
+            f"path too fast: at t = {time:g} s it moves at {speed:.4g} m/s; within the rate limits"
+            f" the end effector stays {_misses(problem, distance, angle)}"
+        )
+    if far >= problem.position_tolerance:
+        raise GoalRejected(
+            f"path: at t = {time:g} s the nearest reachable point is {far:.4g} m away, allowed"
+            f" {problem.position_tolerance:g} m"
+        )
+    raise GoalRejected(
+        f"path: at t = {time:g} s the nearest reachable orientation is {np.rad2deg(turned):.4g} deg"
+        f" away, allowed {np.rad2deg(problem.orientation_tolerance):g} deg"
+    )
+
+
+def _misses(problem, distance: float, angle: float) -> str:
+    if distance >= problem.position_tolerance:
+        return f"{distance:.4g} m behind, allowed {problem.position_tolerance:g} m"
+    allowed = np.rad2deg(problem.orientation_tolerance)
+    return f"{np.rad2deg(angle):.4g} deg behind, allowed {allowed:g} deg"
+
+
+def _angle_between(first: Array, second: Array) -> float:
+    cosine = abs(float(np.dot(first, second)))
+    return 2.0 * float(np.arccos(min(cosine / (np.linalg.norm(first) * np.linalg.norm(second)), 1)))
+
+
+def _numbers(values: Array) -> str:
+    return ", ".join(f"{value:.4f}" for value in values)

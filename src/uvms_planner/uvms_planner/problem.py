@@ -1,0 +1,49 @@
+"""One planner step as the kernels see it: where the motion is, what it may do, what it must hit.
+
+The planned configuration is c = (x, y, z, psi, q): the vehicle's position in map_ned (m), its yaw
+(rad; roll = pitch = 0 for the planned vehicle) and the joints (rad); m = 4 + n numbers. A candidate
+is the increment of c over one step.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics.signals import Array
+
+VEHICLE = 4  # x, y, z, psi stand before the joints
+
+
+class StepProblem(NamedTuple):
+    """Everything a candidate is judged by (a named tuple, which numba takes as it is)."""
+
+    configuration: Array  # (m,) c at the start of the step
+    previous: Array  # (m,) increment of the step before
+    lower: Array  # (m,) least increment
+    upper: Array  # (m,) greatest increment
+    reach: Array  # (m,) increment at full rate
+    jump: Array  # (m,) change of the increment at full acceleration
+    readiness: Array  # (m,) inverse weights of the projection
+    motion_weights: Array  # (m,) cost of an increment of one reach
+    position: Array  # (3,) m, where the end effector shall be at the end of the step
+    rotation: Array  # (3, 3) tool to map_ned at that time
+    oriented: bool  # whether `rotation` counts
+    position_tolerance: float  # m, e of eq. (17)
+    orientation_tolerance: float  # rad
+    iterations: int  # Newton steps of the projection
+    damping: float
+    step: float  # s
+    lookahead: float  # s
+    smoothness_weight: float
+    roll_max: float  # rad
+    pitch_max: float  # rad
+
+
+@njit(cache=True)
+def yaw_quaternion(yaw):
+    """Quaternion (4,), body to world, of a level vehicle with this yaw in rad."""
+    quaternion = np.zeros(4)
+    quaternion[2] = np.sin(0.5 * yaw)
+    quaternion[3] = np.cos(0.5 * yaw)
+    return quaternion

@@ -1,0 +1,139 @@
+"""Bringing a candidate onto the end effector's path: precision comes first.
+
+The differential kinematics of eq. (12), with roll = pitch = 0, read y_dot = J(c) c_dot; bounded,
+damped, weighted Newton steps solve y(c) = y_d for the increment of c next to the one given.
+"""
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics import end_effector, end_effector_jacobian
+from uvms_dynamics.rotations import matrix_to_quat, quat_to_rotation_vector
+from uvms_planner.linear import solve_in_place
+from uvms_planner.problem import VEHICLE, yaw_quaternion
+
+CONVERGED_M = 1e-10
+CONVERGED_RAD = 1e-10
+
+
+@njit(cache=True)
+def configuration_jacobian(model, configuration):
+    """J (6, m): velocity and angular velocity of the tool, world axes, per rate of c.
+
+    The columns of eq. (12) for a level vehicle: x, y, z are world axes already, and psi turns about
+    the body z axis, which is the world's.
+    """
+    q = configuration[VEHICLE:].copy()
+    full = end_effector_jacobian(model, yaw_quaternion(configuration[3]), q)
+    jacobian = np.zeros((6, configuration.shape[0]))
+    for row in range(6):
+        jacobian[row, 3] = full[row, 5]
+        for i in range(q.shape[0]):
+            jacobian[row, VEHICLE + i] = full[row, 6 + i]
+    for i in range(3):
+        jacobian[i, i] = 1.0
+    return jacobian
+
+
+@njit(cache=True)
+def tool_pose(model, configuration):
+    """Position (3,) and rotation (3, 3) of the tool in the world for c (m,), eq. (1)."""
+    return end_effector(
+        model,
+        configuration[:3].copy(),
+        yaw_quaternion(configuration[3]),
+        configuration[VEHICLE:].copy(),
+    )
+
+
+@njit(cache=True)
+def rotation_error(desired, actual):
+    """Rotation vector (3,), world axes, that turns `actual` (3, 3) into `desired` (3, 3)."""
+    return quat_to_rotation_vector(matrix_to_quat(desired @ actual.T))
+
+
+@njit(cache=True)
+def tool_error(model, problem, increment, error):
+    """Fill `error` (6,) with desired minus actual pose; return (m, rad) distances."""
+    position, rotation = tool_pose(model, problem.configuration + increment)
+    for i in range(3):
+        error[i] = problem.position[i] - position[i]
+    distance = np.sqrt(error[0] ** 2 + error[1] ** 2 + error[2] ** 2)
+    if not problem.oriented:
+        return distance, 0.0
+    error[3:] = rotation_error(problem.rotation, rotation)
+    return distance, np.sqrt(error[3] ** 2 + error[4] ** 2 + error[5] ** 2)
+
+
+@njit(cache=True)
+def within_tolerance(problem, distance, angle):
+    """Whether an end-effector error is below e, eq. (17)."""
+    return distance < problem.position_tolerance and angle < problem.orientation_tolerance
+
+
+@njit(cache=True)
+def weighted_step(jacobian, error, readiness, free, damping, equations, step):
+    """Fill `step` (m,) with W J^T (J W J^T + lambda^2 tr I)^-1 error over the free variables."""
+    gram = np.zeros((6, 6))
+    force = np.zeros(6)
+    trace = 0.0
+    for a in range(equations):
+        force[a] = error[a]
+        for b in range(equations):
+            for i in range(readiness.shape[0]):
+                if free[i]:
+                    gram[a, b] += jacobian[a, i] * readiness[i] * jacobian[b, i]
+        trace += gram[a, a]
+    for a in range(equations):
+        gram[a, a] += damping**2 * trace + 1e-30
+    step[:] = 0.0
+    if not solve_in_place(gram, force, equations):
+        return
+    for i in range(readiness.shape[0]):
+        if free[i]:
+            for a in range(equations):
+                step[i] += readiness[i] * jacobian[a, i] * force[a]
+
+
+@njit(cache=True)
+def project(model, problem, increment):
+    """Move `increment` (m,) within its bounds onto the path, in place; return (m, rad) errors."""
+    size = increment.shape[0]
+    equations = 6 if problem.oriented else 3
+    error, step = np.zeros(6), np.zeros(size)
+    free = np.zeros(size, dtype=np.bool_)
+    for i in range(size):
+        increment[i] = min(max(increment[i], problem.lower[i]), problem.upper[i])
+    distance, angle = tool_error(model, problem, increment, error)
+    for _ in range(problem.iterations):
+        if distance < CONVERGED_M and angle < CONVERGED_RAD:
+            break
+        jacobian = configuration_jacobian(model, problem.configuration + increment)
+        for i in range(size):
+            free[i] = problem.readiness[i] > 0.0
+        for _pass in range(size):
+            weighted_step(
+                jacobian, error, problem.readiness, free, problem.damping, equations, step
+            )
+            if not _release_blocked(problem, increment, step, free):
+                break
+        for i in range(size):
+            moved = increment[i] + step[i]
+            increment[i] = min(max(moved, problem.lower[i]), problem.upper[i])
+        distance, angle = tool_error(model, problem, increment, error)
+    return distance, angle
+
+
+@njit(cache=True)
+def _release_blocked(problem, increment, step, free):
+    """Take variables out of `free` that sit at a bound and would be pushed beyond it."""
+    changed = False
+    for i in range(increment.shape[0]):
+        if not free[i]:
+            continue
+        beyond_upper = step[i] > 0.0 and increment[i] >= problem.upper[i]
+        beyond_lower = step[i] < 0.0 and increment[i] <= problem.lower[i]
+        if beyond_upper or beyond_lower:
+            free[i] = False
+            changed = True
+    return changed

@@ -1,0 +1,95 @@
+"""What the planner hands back each step."""
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uvms_dynamics.signals import Array, Reference
+from uvms_planner.follow import FollowedStep
+from uvms_planner.solver import StepSolver
+
+
+@dataclass(frozen=True)
+class GoalFeedback:
+    """How far a goal is, at the stamp of a planner step."""
+
+    stamp: int
+    elapsed: float  # s that are done
+    duration: float  # s, the whole goal
+    planned_error: float  # m, of the last planned step against the path
+    tracking_error: float  # m, of the estimated end effector against where it shall be now
+
+
+@dataclass(frozen=True)
+class GoalResult:
+    """How a goal ended."""
+
+    success: bool
+    message: str
+    max_planned_error: float  # m, of the plan against the path, once it has joined it
+
+
+@dataclass(frozen=True)
+class StepDiagnostics:
+    """How good the step along a path is that was planned last."""
+
+    method: str
+    fitness: float  # 1 / cost, eq. (18)
+    self_disturbance: Array  # (6,) N, N m, F_dis of eq. (16) at the end of the step
+    free_roll: float  # rad, that the vehicle would take up freely
+    free_pitch: float  # rad
+    attitude_violation: float  # rad beyond the limits of eq. (17); 0 within
+    evaluations: int  # candidates judged
+    feasible: int  # of them within e and the attitude limits
+    discarded: int  # of them not within e
+    planned_error: float  # m
+
+    @staticmethod
+    def of(method: str, solver: StepSolver, step: FollowedStep) -> "StepDiagnostics":
+        """The diagnostics of a planned step."""
+        choice = step.choice
+        roll, pitch = solver.free_attitude(step.knot.configuration)
+        return StepDiagnostics(
+            method=method,
+            fitness=1.0 / choice.cost if choice.cost > 0.0 else np.inf,
+            self_disturbance=solver.disturbance(step.problem, choice.increment),
+            free_roll=roll,
+            free_pitch=pitch,
+            attitude_violation=choice.attitude_violation,
+            evaluations=choice.evaluations,
+            feasible=choice.feasible,
+            discarded=choice.discarded,
+            planned_error=step.planned_error,
+        )
+
+    def values(self) -> dict[str, Any]:
+        """The numbers by name, for /diagnostics; angles in degrees."""
+        force, moment = self.self_disturbance[:3], self.self_disturbance[3:]
+        return {
+            "method": self.method,
+            "fitness": self.fitness,
+            "self_disturbance_n": float(np.linalg.norm(force)),
+            "self_disturbance_nm": float(np.linalg.norm(moment)),
+            "free_roll_deg": float(np.rad2deg(self.free_roll)),
+            "free_pitch_deg": float(np.rad2deg(self.free_pitch)),
+            "attitude_violation_deg": float(np.rad2deg(self.attitude_violation)),
+            "evaluations": self.evaluations,
+            "feasible": self.feasible,
+            "discarded": self.discarded,
+            "planned_error_m": self.planned_error,
+        }
+
+
+@dataclass(frozen=True)
+class PlannerStep:
+    """What one planner tick gives."""
+
+    references: tuple[Reference, ...]  # the segments planned in this tick, in order
+    feedback: GoalFeedback | None  # while a goal is active
+    finished: GoalResult | None  # in the tick in which a goal ends
+    step: StepDiagnostics | None  # of the last step planned along a path in this tick
+
+    def diagnostics(self) -> dict[str, Any]:
+        """Numbers for /diagnostics by name; empty when nothing was chosen."""
+        return self.step.values() if self.step is not None else {}
