@@ -3,7 +3,10 @@
 
 SCENARIO ?= manipulation
 BIN := .venv/bin
-SETUP := $(or $(PYTHON),python3) -I -S tools/environment
+INTERPRETER := $(or $(PYTHON),python3)
+SETUP = command -v $(INTERPRETER) >/dev/null || { echo "$(INTERPRETER) is not on the PATH: install Python 3.10-3.13 \
+	(sudo apt install python3, brew install python@3.12) or name one, as in PYTHON=python3.12" >&2; exit 1; }; \
+	$(INTERPRETER) -I -S tools/environment
 CODE := src bringup tests tools $(wildcard benchmarks examples)
 
 # A sourced ROS workspace or another environment must not leak into this one.

@@ -18,12 +18,13 @@ FOREIGN = (
 
 NO_NETWORK = re.compile(
     r"NewConnectionError|NameResolutionError|name resolution|ConnectTimeout|ReadTimeout|ProxyError"
-    r"|SSLError|Max retries exceeded|Network is unreachable|Connection (refused|reset|broken)",
+    r"|SSLError|Max retries exceeded|Network is unreachable|Connection (refused|reset|broken)"
+    r"|from versions: none",
     re.IGNORECASE,
 )
 NETWORK_HELP = (
     "pip could not reach the package index. Check the network, a proxy (HTTPS_PROXY) or a mirror "
-    "(PIP_INDEX_URL) and call again: what is done stays done."
+    "(PIP_INDEX_URL) and call again; what was downloaded is in pip's cache."
 )
 
 
