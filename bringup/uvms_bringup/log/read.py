@@ -26,10 +26,11 @@ _TELLING = (topics.TRUE_ODOMETRY, topics.THRUSTER_COMMAND, topics.WRENCH_COMMAND
 
 
 class Series:
-    """Signals of one topic over time: `time` (k,) in s, and one array per field of the signal."""
+    """Signals of one topic over time: `stamps` (k,) in ns, `time` in s, an array per field."""
 
-    def __init__(self, time: Array, columns: dict[str, np.ndarray]) -> None:
-        self.time = time
+    def __init__(self, stamps: np.ndarray, columns: dict[str, np.ndarray]) -> None:
+        self.stamps = stamps
+        self.time: Array = stamps / NANOSECONDS
         self._columns = columns
 
     def __getattr__(self, name: str) -> np.ndarray:
@@ -40,6 +41,10 @@ class Series:
 
     def __len__(self) -> int:
         return len(self.time)
+
+    def take(self, index: np.ndarray) -> "Series":
+        """The series at these indices."""
+        return Series(self.stamps[index], {key: of[index] for key, of in self._columns.items()})
 
 
 class RunLog:
@@ -158,8 +163,7 @@ class RunLog:
             raise LogError(f"log {self.path}: has no valid message of {topic.name}")
         names = [field.name for field in fields(signals[0]) if field.name != "stamp"]
         columns = {name: np.array([getattr(one, name) for one in signals]) for name in names}
-        time = np.array([one.stamp for one in signals]) / NANOSECONDS
-        return Series(time, columns)
+        return Series(np.array([one.stamp for one in signals], dtype=np.int64), columns)
 
     def statuses(self, node: str) -> list[Status]:
         """Diagnostics of one node; names may carry a namespace or a title behind a colon."""
