@@ -10,13 +10,13 @@ from uvms_bringup.log import goal_file
 from uvms_bringup.log.read import RunLog, Series
 from uvms_dynamics import Model, build_model, end_effector, topics
 from uvms_dynamics.rotations import quat_to_rpy
-from uvms_dynamics.signals import Array, PathGoal, Reference
+from uvms_dynamics.signals import Array, PathGoal, Reference, to_seconds
 from uvms_dynamics.vehicle import Vehicle
 from uvms_dynamics.vehicle.loader import vehicle_from_yaml
 from uvms_planner.path import EndEffectorPath
 
-PATH_START = "path_start_s"
-"""Key in the planner's diagnostics: simulation time at which its path begins."""
+ELAPSED = "elapsed_s"
+"""Key in the planner's diagnostics: how much of its goal is done, s."""
 
 STILL = 1e-6
 """A reference whose end effector moves less than this, m, holds still."""
@@ -137,8 +137,8 @@ class Analysis:
     def path_start_s(self) -> float:
         """When the path begins: as the planner says, else where its references fit it best."""
         for status in self.log.statuses("motion_planner"):
-            if np.isfinite(start := status.number(PATH_START)):
-                return start
+            if np.isfinite(elapsed := status.number(ELAPSED)):
+                return round(to_seconds(status.stamp) - elapsed, 9)
         return self._fitted_start()
 
     def _fitted_start(self) -> float:

@@ -82,6 +82,10 @@ def _write_plan(log: SignalWriter, tick: LoopTick) -> None:
     for reference in tick.plan.references:
         log.write(topics.REFERENCE, reference, tick.stamp)
     status = Status(
-        tick.stamp, "motion_planner", diagnostics.OK, "ok", {"step_ms": tick.plan_ms}
+        tick.stamp,
+        "motion_planner",
+        diagnostics.OK,
+        "ok",
+        {"step_ms": tick.plan_ms} | tick.plan.diagnostics(),
     )
     log.write(topics.DIAGNOSTICS, status)

@@ -144,7 +144,9 @@ class Synthetic:
         saturated[0] = number % 4 == 0
         log.write(topics.JOINT_COMMAND, JointCommand(stamp, np.zeros(4)))
         log.write(topics.THRUSTER_COMMAND, ThrusterCommand(stamp, thrust))
-        log.write(topics.ALLOCATION, Allocation(stamp, thrust, wrench.wrench, 0 * restoring, saturated))
+        log.write(
+            topics.ALLOCATION, Allocation(stamp, thrust, wrench.wrench, 0 * restoring, saturated)
+        )
         if number % 10 == 0:
             self.plan(log, number, stamp, time)
 
@@ -152,7 +154,7 @@ class Synthetic:
         log.write(topics.REFERENCE, self.reference(stamp, time), stamp)
         values: dict[str, float] = {"step_ms": float(number // 10 + 1)}
         if self.known.name_start:
-            values["path_start_s"] = self.known.start
+            values["elapsed_s"] = time - self.known.start
         log.write(topics.DIAGNOSTICS, Status(stamp, "motion_planner", values=values))
         log.write(topics.DIAGNOSTICS, Status(stamp, "plant", values={"lockstep_timeouts": 2}))
 

@@ -1,6 +1,7 @@
 """Figures of what pushes the vehicle, and of how well it knows where it is."""
 
 import numpy as np
+from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uvms_bringup.analysis import Analysis
@@ -32,28 +33,49 @@ def self_disturbance(run: Analysis) -> Figure:
 
 
 def thrusters(run: Analysis) -> Figure:
-    """Thrust of each thruster with its limits; ticks at which it is at them are marked."""
+    """Thrust of each thruster with its limits, ticks at the limits marked, and what is missing."""
     items = run.vehicle.thrusters
-    figure = style.new_figure(0.8 + 1.55 * -(-len(items) // 2))
-    grid = figure.subplots(-(-len(items) // 2), 2, sharex=True, squeeze=False)
-    time = run.allocation.time
-    for index, (axes, item) in enumerate(zip(grid.flat, items, strict=False)):
-        thrust, at_limit = run.allocation.thrust[:, index], run.allocation.saturated[:, index]
-        color = style.COLORS[index % len(style.COLORS)]
-        axes.plot(style.thin(time), style.thin(thrust), color=color, linewidth=0.9)
-        axes.plot(time[at_limit], thrust[at_limit], ".", color="#b22222", markersize=2.0)
-        for limit in (-item.limit_n, item.limit_n):
-            axes.axhline(limit, **style.LIMIT)
-        rms = np.sqrt(np.mean(thrust**2))
-        axes.set_title(f"{item.name}   rms {rms:.1f} N, at its limit {100 * at_limit.mean():.1f} %")
-        axes.set_ylabel("N")
-        axes.set_ylim(-1.15 * item.limit_n, 1.15 * item.limit_n)
-    for axes in list(grid.flat)[len(items) :]:
+    count = -(-(len(items) + 1) // 2)
+    figure = style.new_figure(0.8 + 1.55 * count)
+    panels = list(figure.subplots(count, 2, sharex=True, squeeze=False).flat)
+    for index, item in enumerate(items):
+        _thruster(panels[index], run, index, item.name, item.limit_n)
+    _missing(panels[len(items)], run)
+    for axes in panels[len(items) + 1 :]:
         axes.set_axis_off()
-    for axes in list(grid.flat)[max(len(items) - 2, 0) : len(items)]:
-        axes.xaxis.set_tick_params(labelbottom=True)
-        style.time_axis(axes, time)
+    for axes in panels[-2:]:
+        style.time_axis(axes, run.allocation.time)
     return figure
+
+
+def _thruster(axes: Axes, run: Analysis, index: int, name: str, limit: float) -> None:
+    time = run.allocation.time
+    thrust, at_limit = run.allocation.thrust[:, index], run.allocation.saturated[:, index]
+    color = style.COLORS[index % len(style.COLORS)]
+    axes.plot(style.thin(time), style.thin(thrust), color=color, linewidth=0.9)
+    axes.plot(time[at_limit], thrust[at_limit], ".", color="#b22222", markersize=2.0)
+    height = min(1.15 * limit, max(1.3 * float(np.abs(thrust).max()), 0.1 * limit))
+    axes.set_ylim(-height, height)
+    for bound in (-limit, limit):
+        if abs(bound) < height:
+            axes.axhline(bound, **style.LIMIT)
+    axes.set_title(f"{name}  (±{limit:g} N)", fontsize=9)
+    rms = np.sqrt(np.mean(thrust**2))
+    text = f"rms {rms:.2g} N, at limit {100 * at_limit.mean():.1f} %"
+    axes.text(1.0, 1.02, text, transform=axes.transAxes, ha="right", fontsize=8, color="#555555")
+    axes.set_ylabel("N")
+
+
+def _missing(axes: Axes, run: Analysis) -> None:
+    """Length of the part of the commanded wrench that the thrusters do not give."""
+    time, residual = run.allocation.time, run.allocation.residual
+    force = np.linalg.norm(residual[:, :3], axis=1)
+    moment = np.linalg.norm(residual[:, 3:], axis=1)
+    axes.plot(style.thin(time), style.thin(force), color="black", label="force / N")
+    axes.plot(style.thin(time), style.thin(moment), color=style.COLORS[1], label="moment / N m")
+    axes.set_ylim(0.0, max(1.15 * float(np.max([force, moment])), 1e-3))
+    axes.set_title("commanded, not given", fontsize=9)
+    style.legend(axes)
 
 
 def navigation(run: Analysis) -> Figure:

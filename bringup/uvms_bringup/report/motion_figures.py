@@ -61,7 +61,7 @@ def _search(values: Any, found: dict[str, float]) -> None:
     for key, value in values.items() if isinstance(values, dict) else ():
         _search(value, found)
         for angle in ("roll", "pitch"):
-            if key in (f"{angle}_limit_deg", f"max_{angle}_deg"):
+            if key == f"{angle}_max_deg":
                 found[angle] = float(value)
 
 

@@ -91,5 +91,6 @@ class PlannerStep:
     step: StepDiagnostics | None  # of the last step planned along a path in this tick
 
     def diagnostics(self) -> dict[str, Any]:
-        """Numbers for /diagnostics by name; empty when nothing was chosen."""
-        return self.step.values() if self.step is not None else {}
+        """Numbers for /diagnostics by name; empty when nothing was chosen and no goal is active."""
+        progress = {"elapsed_s": self.feedback.elapsed} if self.feedback is not None else {}
+        return progress | (self.step.values() if self.step is not None else {})
