@@ -6,10 +6,11 @@ Denavit-Hartenberg frame i lies in it at Tz(d) Tx(a) Rx(alpha), a constant. Body
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from uvms_dynamics.drag_table import PER_OCTAVE, resample
 from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle.arm import Arm, DragCylinder, Joint
@@ -40,7 +41,8 @@ class Model(NamedTuple):
     strip_position: Array  # (s, 3)
     strip_axis: Array  # (s, 3)
     strip_area: Array  # (s, 2): 1/2 rho x diameter x length, diameter / kinematic viscosity
-    drag_coefficient: Array  # (k, 2): ln(Reynolds number), C_D
+    drag_coefficient: Array  # (k,) C_D at the Reynolds numbers of `drag_table`
+    drag_first: int  # exponent and top mantissa bits of the first of them
     # joints
     rotor_inertia: Array  # (n,)
     friction: Array  # (n, 3): viscous, Coulomb, width of its tanh (rad/s)
@@ -77,6 +79,7 @@ def build_model(vehicle: Vehicle) -> Model:
     )
 
 
+_EXPONENT_BIAS = 1023  # of a float64
 _IDENTITY: Pose = (np.zeros(3), np.eye(3))
 
 
@@ -121,7 +124,7 @@ def _weights(body, pose: Pose, environment) -> tuple[float, Array]:
     return weight - buoyancy, weight * cg - buoyancy * cb
 
 
-def _strip_tables(vehicle: Vehicle) -> dict[str, Array]:
+def _strip_tables(vehicle: Vehicle) -> dict[str, Any]:
     environment, arm = vehicle.environment, vehicle.arm
     rows: list[Array] = []
     start = [0]
@@ -130,13 +133,14 @@ def _strip_tables(vehicle: Vehicle) -> dict[str, Array]:
             rows.extend(_strips(cylinder, _distal_pose(joint), environment))
         start.append(len(rows))
     table = _table(rows).reshape(-1, 8)
-    coefficient = arm.drag_coefficient
+    first, _, values = resample(arm.drag_coefficient)
     return {
         "strip_start": np.array(start, dtype=np.int64),
         "strip_position": _table(table[:, 0:3]),
         "strip_axis": _table(table[:, 3:6]),
         "strip_area": _table(table[:, 6:8]),
-        "drag_coefficient": _table([np.log(coefficient.reynolds), coefficient.cd]).T.copy(),
+        "drag_coefficient": _table(values),
+        "drag_first": (_EXPONENT_BIAS + first) * PER_OCTAVE,
     }
 
 

@@ -1,27 +1,27 @@
 """Where the arm's frames and the tool are: poses, Jacobian, weight and buoyancy."""
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.spatial import cross, turn_about_z
 from uvms_dynamics.rotations import quat_to_matrix
 
 
-@njit(cache=True)
+@inner
 def down_in_body(quat):
     """World's down (0, 0, 1) in the body frame: the last row of R_world_body."""
     x, y, z, w = quat[0], quat[1], quat[2], quat[3]
     return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)
 
 
-@njit(cache=True)
+@inner
 def joint_rotations(model, q, rotation):
     """Set rotation[i] (3, 3) of each joint frame to its parent; q (n,) rad."""
     for i in range(q.shape[0]):
         turn_about_z(model.tree_rotation, i, q[i] + model.joint_offset[i], rotation)
 
 
-@njit(cache=True)
+@kernel
 def joint_frames(model, q):
     """Origins (n, 3) and rotations (n, 3, 3) of the joint frames in the body frame."""
     n = q.shape[0]
@@ -36,7 +36,7 @@ def joint_frames(model, q):
     return origin, rotation
 
 
-@njit(cache=True)
+@inner
 def _place(origin, rotation, i, position, turned):
     """Frame i from frame i - 1 and its pose in it."""
     for row in range(3):
@@ -51,7 +51,7 @@ def _place(origin, rotation, i, position, turned):
             rotation[i, row, column] = total
 
 
-@njit(cache=True)
+@kernel
 def tool_in_body(model, origin, rotation):
     """Tool position (3,) and rotation (3, 3) in the body frame, from the joint frames."""
     last = origin.shape[0] - 1
@@ -68,7 +68,7 @@ def tool_in_body(model, origin, rotation):
     return place, turned
 
 
-@njit(cache=True)
+@kernel
 def end_effector(model, position, quat, q):
     """Tool position (3,) and rotation (3, 3) in the world; eq. (1), corrected from the print.
 
@@ -90,7 +90,7 @@ def end_effector(model, position, quat, q):
     return p, out
 
 
-@njit(cache=True)
+@kernel
 def end_effector_jacobian(model, quat, q):
     """J (6, 6+n) from (nu, q_dot), nu in the body frame, to the tool's (v, omega) in the world.
 
@@ -115,7 +115,7 @@ def end_effector_jacobian(model, quat, q):
     return jacobian
 
 
-@njit(cache=True)
+@inner
 def _column(jacobian, column, body, l0, l1, l2, a0, a1, a2):
     """One column, turned from body to world axes."""
     for row in range(3):
@@ -123,7 +123,7 @@ def _column(jacobian, column, body, l0, l1, l2, a0, a1, a2):
         jacobian[3 + row, column] = body[row, 0] * a0 + body[row, 1] * a1 + body[row, 2] * a2
 
 
-@njit(cache=True)
+@kernel
 def restoring_wrench(model, quat, q):
     """Weight and buoyancy (6,) of hull and links ON the system, body frame, about its origin.
 
@@ -139,7 +139,7 @@ def restoring_wrench(model, quat, q):
     return out
 
 
-@njit(cache=True)
+@inner
 def _first_moment(model, origin, rotation):
     """Wet weight and its first moment P in the body frame."""
     total = model.net_weight[0]
@@ -155,6 +155,6 @@ def _first_moment(model, origin, rotation):
     return total, p0, p1, p2
 
 
-@njit(cache=True)
+@inner
 def _dot(rotation, i, row, x, y, z):
     return rotation[i, row, 0] * x + rotation[i, row, 1] * y + rotation[i, row, 2] * z

@@ -2,12 +2,18 @@
 
 import math
 
-from numba import njit
+import numpy as np
 
+from uvms_dynamics.drag_table import PER_OCTAVE_BITS
+from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.kernels.spatial import cross
 
+_SHIFT = 52 - PER_OCTAVE_BITS  # a float64 has 52 bits of mantissa below its exponent
+_MASK = (1 << _SHIFT) - 1
+_CELL = 1.0 / (1 << _SHIFT)
 
-@njit(cache=True)
+
+@inner
 def link_drag(model, i, v0, v1, v2, w0, w1, w2):
     """Drag on link i (1..n) about its origin, from its motion through the water.
 
@@ -24,7 +30,8 @@ def link_drag(model, i, v0, v1, v2, w0, w1, w2):
         along = u0 * a0 + u1 * a1 + u2 * a2
         u0, u1, u2 = u0 - along * a0, u1 - along * a1, u2 - along * a2
         speed = math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
-        scale = -area[s, 0] * _coefficient(model.drag_coefficient, speed * area[s, 1]) * speed
+        drag = _coefficient(model.drag_coefficient, model.drag_first, speed * area[s, 1])
+        scale = -area[s, 0] * drag * speed
         d0, d1, d2 = scale * u0, scale * u1, scale * u2
         m0, m1, m2 = cross(r0, r1, r2, d0, d1, d2)
         f0, f1, f2 = f0 + d0, f1 + d1, f2 + d2
@@ -32,19 +39,14 @@ def link_drag(model, i, v0, v1, v2, w0, w1, w2):
     return f0, f1, f2, n0, n1, n2
 
 
-@njit(cache=True)
-def _coefficient(table, reynolds):
-    """C_D(Re), linear in ln Re, held constant beyond the table's ends."""
-    last = table.shape[0] - 1
-    if reynolds <= 0.0:
-        return table[0, 1]
-    x = math.log(reynolds)
-    if x <= table[0, 0]:
-        return table[0, 1]
-    if x >= table[last, 0]:
-        return table[last, 1]
-    k = 1
-    while table[k, 0] < x:
-        k += 1
-    part = (x - table[k - 1, 0]) / (table[k, 0] - table[k - 1, 0])
-    return table[k - 1, 1] + part * (table[k, 1] - table[k - 1, 1])
+@inner
+def _coefficient(table, first, reynolds):
+    """C_D(Re), linear between the points of `drag_table`, constant beyond its ends."""
+    bits = np.float64(reynolds).view(np.int64)
+    k = (bits >> _SHIFT) - first
+    if k < 0:
+        return table[0]
+    if k >= table.shape[0] - 1:
+        return table[table.shape[0] - 1]
+    part = float(bits & _MASK) * _CELL
+    return table[k] + part * (table[k + 1] - table[k])

@@ -1,12 +1,12 @@
 """Forward dynamics of vehicle and arm together by articulated bodies."""
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics.kernels.chain import down_in_body, joint_rotations
 from uvms_dynamics.kernels.drag import link_drag
 from uvms_dynamics.kernels.hull import hull_bias
 from uvms_dynamics.kernels.inertia import add_to_parent
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.solve import solve_symmetric
 from uvms_dynamics.kernels.spatial import (
     accumulate,
@@ -22,7 +22,7 @@ from uvms_dynamics.kernels.spatial import (
 from uvms_dynamics.kernels.workspace import make_workspace
 
 
-@njit(cache=True)
+@kernel
 def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     """Accelerations (6+n,) = (nu_r_dot, q_ddot) under tau (6+n,) = (body wrench, joint torques).
 
@@ -35,7 +35,7 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     return out
 
 
-@njit(cache=True)
+@kernel
 def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
     n = q.shape[0]
@@ -50,7 +50,7 @@ def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
         out[5 + i] = _outward_acceleration(model, i, work)
 
 
-@njit(cache=True)
+@inner
 def _start_at_hull(model, quat, nu_r, tau, work):
     """Velocity, inertia and bias force of the hull under the body wrench."""
     k0, k1, k2 = down_in_body(quat)
@@ -66,14 +66,14 @@ def _start_at_hull(model, quat, nu_r, tau, work):
     _copy_inertia(model, 0, work)
 
 
-@njit(cache=True)
+@inner
 def _copy_inertia(model, i, work):
     for row in range(6):
         for column in range(6):
             work.inertia[i, row, column] = model.inertia[i, row, column]
 
 
-@njit(cache=True)
+@inner
 def _outward_velocity(model, i, rate, work):
     """Velocity, velocity product, inertia and bias force of link i."""
     v0, v1, v2, w0, w1, w2 = load(work.velocity, i - 1)
@@ -96,7 +96,7 @@ def _outward_velocity(model, i, rate, work):
     _copy_inertia(model, i, work)
 
 
-@njit(cache=True)
+@inner
 def _inward_inertia(model, i, torque, work):
     """Articulated inertia and bias force of link i, handed to its parent.
 
@@ -128,7 +128,7 @@ def _inward_inertia(model, i, torque, work):
     add_to_parent(table, i, work.rotation, model.tree_position, i - 1)
 
 
-@njit(cache=True)
+@inner
 def _hull_acceleration(work, out):
     """Solve the articulated inertia of the hull for its acceleration."""
     for k in range(6):
@@ -138,7 +138,7 @@ def _hull_acceleration(work, out):
         work.acceleration[0, k] = out[k]
 
 
-@njit(cache=True)
+@inner
 def _outward_acceleration(model, i, work):
     """Acceleration of link i; returns the joint's own."""
     a0, a1, a2, b0, b1, b2 = load(work.acceleration, i - 1)

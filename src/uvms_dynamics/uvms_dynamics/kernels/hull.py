@@ -3,12 +3,12 @@
 import math
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.spatial import gyroscopic
 
 
-@njit(cache=True)
+@kernel
 def hull_bias_wrench(model, nu_r):
     """C(nu_r) nu_r + D(nu_r) nu_r (6,) of the hull alone, rigid body and added mass together.
 
@@ -21,7 +21,7 @@ def hull_bias_wrench(model, nu_r):
     return out
 
 
-@njit(cache=True)
+@inner
 def hull_bias(model, u, v, w, p, q, r):
     """The same in scalars."""
     f0, f1, f2, n0, n1, n2 = gyroscopic(model.inertia, 0, u, v, w, p, q, r)
@@ -35,7 +35,7 @@ def hull_bias(model, u, v, w, p, q, r):
     )
 
 
-@njit(cache=True)
+@inner
 def damping(model, k, x):
     """Linear and quadratic damping of one degree of freedom: (d_k + d_kk |x|) x."""
     return (model.linear_damping[k] + model.quadratic_damping[k] * math.fabs(x)) * x

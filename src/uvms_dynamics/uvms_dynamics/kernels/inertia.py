@@ -1,11 +1,10 @@
 """Move a general symmetric 6x6 inertia to the parent's frame, in scalars."""
 
-from numba import njit
-
+from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.kernels.spatial import cross, turn
 
 
-@njit(cache=True)
+@inner
 def add_to_parent(inertia, i, rotation, position, parent):
     """inertia[parent] += X^T inertia[i] X, X = [R^T, -R^T [p]x; 0, R^T] of joint frame i - 1.
 
@@ -50,7 +49,7 @@ def add_to_parent(inertia, i, rotation, position, parent):
     _add_coupling(inertia, parent, 2, b20, b21, b22)
 
 
-@njit(cache=True)
+@inner
 def _turned_symmetric(inertia, i, k, rotation, frame):
     """Upper triangle of R S R^T of the diagonal block S that starts at row k."""
     s00, s01, s02 = inertia[i, k, k], inertia[i, k, k + 1], inertia[i, k, k + 2]
@@ -64,7 +63,7 @@ def _turned_symmetric(inertia, i, k, rotation, frame):
     return y00, y01, y02, y11, y12, y22
 
 
-@njit(cache=True)
+@inner
 def _turned_coupling(inertia, i, rotation, frame):
     """R B R^T of the upper right block B."""
     x00, x10, x20 = turn(rotation, frame, inertia[i, 0, 3], inertia[i, 1, 3], inertia[i, 2, 3])
@@ -76,7 +75,7 @@ def _turned_coupling(inertia, i, rotation, frame):
     return y00, y01, y02, y10, y11, y12, y20, y21, y22
 
 
-@njit(cache=True)
+@inner
 def _add_symmetric(inertia, i, k, s00, s01, s02, s11, s12, s22):
     inertia[i, k, k] += s00
     inertia[i, k, k + 1] += s01
@@ -89,7 +88,7 @@ def _add_symmetric(inertia, i, k, s00, s01, s02, s11, s12, s22):
     inertia[i, k + 2, k + 2] += s22
 
 
-@njit(cache=True)
+@inner
 def _add_coupling(inertia, i, row, x, y, z):
     inertia[i, row, 3] += x
     inertia[i, row, 4] += y

@@ -1,11 +1,11 @@
 """Recursive Newton-Euler: the forces that make a motion, and what the arm does to the vehicle."""
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics.kernels.chain import down_in_body, joint_rotations
 from uvms_dynamics.kernels.drag import link_drag
 from uvms_dynamics.kernels.hull import hull_bias
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.spatial import (
     accumulate,
     force_to_parent,
@@ -20,7 +20,7 @@ from uvms_dynamics.kernels.spatial import (
 from uvms_dynamics.kernels.workspace import make_workspace
 
 
-@njit(cache=True)
+@kernel
 def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """Generalized force (6+n,) that makes a motion: body wrench, then joint torques.
 
@@ -41,7 +41,7 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     return out
 
 
-@njit(cache=True)
+@kernel
 def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """Wrench (6,) that the arm exerts ON the vehicle through joint 1, about the body origin.
 
@@ -58,7 +58,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     return out
 
 
-@njit(cache=True)
+@kernel
 def forces_on_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work):
     """Outward motions, inward forces: work.force[i] through joint i, row 0 at the hull.
 
@@ -81,7 +81,7 @@ def forces_on_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work):
         accumulate(work.force, i - 1, f0, f1, f2, n0, n1, n2)
 
 
-@njit(cache=True)
+@inner
 def _move_link(model, i, rate, acceleration, work):
     """Velocity, acceleration and down direction of link i from those of its parent, eq. (2)-(7)."""
     frame, position = i - 1, model.tree_position
@@ -97,7 +97,7 @@ def _move_link(model, i, rate, acceleration, work):
     work.down[i, 0], work.down[i, 1], work.down[i, 2] = k0, k1, k2
 
 
-@njit(cache=True)
+@inner
 def _load_link(model, i, work):
     """Force that link i needs for its own motion: I a + C v - drag - weight, eq. (14)."""
     v0, v1, v2, w0, w1, w2 = load(work.velocity, i)
@@ -118,7 +118,7 @@ def _load_link(model, i, work):
     )
 
 
-@njit(cache=True)
+@inner
 def _add_hull(model, nu_r, nu_r_dot, work):
     """Add what the hull itself needs to work.force[0]."""
     f0, f1, f2, n0, n1, n2 = times(

@@ -3,10 +3,11 @@
 import math
 
 import numpy as np
-from numba import njit
+
+from uvms_dynamics.kernels.jit import inner, kernel
 
 
-@njit(cache=True)
+@kernel
 def joint_passive_torque(model, q, q_dot):
     """Torque (n,) of friction and end stops ON each joint; q (n,) rad, q_dot (n,) rad/s.
 
@@ -19,7 +20,7 @@ def joint_passive_torque(model, q, q_dot):
     return out
 
 
-@njit(cache=True)
+@inner
 def passive_torque(model, i, angle, rate):
     """The same of joint i alone."""
     viscous, coulomb, width = model.friction[i, 0], model.friction[i, 1], model.friction[i, 2]
@@ -32,7 +33,7 @@ def passive_torque(model, i, angle, rate):
     return torque
 
 
-@njit(cache=True)
+@inner
 def _stop(model, i, depth, speed):
     """Push of an end stop pressed in by depth, rad, at a speed, rad/s."""
     return max(0.0, model.stops[i, 2] * depth * (1.0 + model.stops[i, 3] * speed))

@@ -1,14 +1,14 @@
 """Mass matrix of the whole system by composite bodies."""
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics.kernels.chain import joint_rotations
 from uvms_dynamics.kernels.inertia import add_to_parent
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.spatial import force_to_parent
 
 
-@njit(cache=True)
+@kernel
 def mass_matrix(model, q):
     """M(q) (6+n, 6+n): rigid bodies, added mass and rotors; symmetric positive definite.
 
@@ -29,7 +29,7 @@ def mass_matrix(model, q):
     return matrix
 
 
-@njit(cache=True)
+@inner
 def _joint_row(model, i, rotation, composite, matrix):
     """Row and column of joint i: the force of a unit acceleration, carried to the base."""
     f0, f1, f2 = composite[i, 0, 5], composite[i, 1, 5], composite[i, 2, 5]

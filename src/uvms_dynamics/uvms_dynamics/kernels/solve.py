@@ -1,9 +1,9 @@
 """Solve a symmetric positive definite system of six equations."""
 
-from numba import njit
+from uvms_dynamics.kernels.jit import inner
 
 
-@njit(cache=True)
+@inner
 def solve_symmetric(table, x):
     """Replace x[:6] by A^-1 x[:6], A = table[0] (6, 6), by its L D L^T; A is overwritten."""
     for j in range(6):

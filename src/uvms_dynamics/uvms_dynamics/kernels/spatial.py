@@ -8,16 +8,16 @@ row; `i` picks the row. Notation: Featherstone, Rigid Body Dynamics Algorithms (
 
 import math
 
-from numba import njit
+from uvms_dynamics.kernels.jit import inner
 
 
-@njit(cache=True)
+@inner
 def cross(a0, a1, a2, b0, b1, b2):
     """Vector product a x b."""
     return a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
 
 
-@njit(cache=True)
+@inner
 def turn(rotation, i, x, y, z):
     """Components in the parent frame of a vector of frame i: R x."""
     return (
@@ -27,7 +27,7 @@ def turn(rotation, i, x, y, z):
     )
 
 
-@njit(cache=True)
+@inner
 def turn_back(rotation, i, x, y, z):
     """Components in frame i of a vector of the parent frame: R^T x."""
     return (
@@ -37,7 +37,7 @@ def turn_back(rotation, i, x, y, z):
     )
 
 
-@njit(cache=True)
+@inner
 def turn_about_z(tree, i, angle, rotation):
     """Set rotation[i] = tree[i] Rz(angle): joint frame to parent, turned by the joint."""
     c, s = math.cos(angle), math.sin(angle)
@@ -48,7 +48,7 @@ def turn_about_z(tree, i, angle, rotation):
         rotation[i, row, 2] = tree[i, row, 2]
 
 
-@njit(cache=True)
+@inner
 def motion_to_child(rotation, position, i, v0, v1, v2, w0, w1, w2):
     """Motion of the parent seen from frame i: (R^T (v + w x p), R^T w)."""
     a0, a1, a2 = cross(w0, w1, w2, position[i, 0], position[i, 1], position[i, 2])
@@ -57,7 +57,7 @@ def motion_to_child(rotation, position, i, v0, v1, v2, w0, w1, w2):
     return u0, u1, u2, x0, x1, x2
 
 
-@njit(cache=True)
+@inner
 def force_to_parent(rotation, position, i, f0, f1, f2, n0, n1, n2):
     """Force on frame i about the parent's origin: (R f, R n + p x R f)."""
     g0, g1, g2 = turn(rotation, i, f0, f1, f2)
@@ -66,7 +66,7 @@ def force_to_parent(rotation, position, i, f0, f1, f2, n0, n1, n2):
     return g0, g1, g2, m0 + c0, m1 + c1, m2 + c2
 
 
-@njit(cache=True)
+@inner
 def times(inertia, i, v0, v1, v2, w0, w1, w2):
     """Momentum I v of body i."""
     return (
@@ -79,7 +79,7 @@ def times(inertia, i, v0, v1, v2, w0, w1, w2):
     )
 
 
-@njit(cache=True)
+@inner
 def _row(inertia, i, k, v0, v1, v2, w0, w1, w2):
     return (
         inertia[i, k, 0] * v0
@@ -91,7 +91,7 @@ def _row(inertia, i, k, v0, v1, v2, w0, w1, w2):
     )
 
 
-@njit(cache=True)
+@inner
 def gyroscopic(inertia, i, v0, v1, v2, w0, w1, w2):
     """Kirchhoff's C(v) v = (w x p, w x h + v x p) with the momentum (p, h) = I v of body i.
 
@@ -105,7 +105,7 @@ def gyroscopic(inertia, i, v0, v1, v2, w0, w1, w2):
     return f0, f1, f2, n0 + m0, n1 + m1, n2 + m2
 
 
-@njit(cache=True)
+@inner
 def weight(model, i, k0, k1, k2):
     """Weight and buoyancy of body i as a force; (k0, k1, k2) points down in its frame."""
     w = model.net_weight[i]
@@ -114,20 +114,20 @@ def weight(model, i, k0, k1, k2):
     return w * k0, w * k1, w * k2, n0, n1, n2
 
 
-@njit(cache=True)
+@inner
 def store(table, i, a0, a1, a2, a3, a4, a5):
     """Write six numbers to row i."""
     table[i, 0], table[i, 1], table[i, 2] = a0, a1, a2
     table[i, 3], table[i, 4], table[i, 5] = a3, a4, a5
 
 
-@njit(cache=True)
+@inner
 def load(table, i):
     """Read six numbers of row i."""
     return table[i, 0], table[i, 1], table[i, 2], table[i, 3], table[i, 4], table[i, 5]
 
 
-@njit(cache=True)
+@inner
 def accumulate(table, i, a0, a1, a2, a3, a4, a5):
     """Add six numbers to row i."""
     table[i, 0] += a0

@@ -3,8 +3,8 @@
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.signals import Array
 
 
@@ -20,7 +20,7 @@ class Workspace(NamedTuple):
     down: Array  # (n+1, 3) unit vector downward in each frame
 
 
-@njit(cache=True)
+@kernel
 def make_workspace(n):
     """Workspace of an arm of n joints."""
     return Workspace(

@@ -1,0 +1,26 @@
+"""The drag coefficient resampled so that a lookup needs neither a logarithm nor a search."""
+
+import math
+
+import numpy as np
+
+from uvms_dynamics.signals import Array
+from uvms_dynamics.vehicle.arm import DragCoefficient
+
+PER_OCTAVE_BITS = 4
+PER_OCTAVE = 1 << PER_OCTAVE_BITS
+"""Points in each doubling of the Reynolds number; within them C_D is linear in Re.
+
+The top bits of a float64 are its exponent and mantissa, so they are the index of its cell. Against
+the file's table, linear in ln Re, the resampled one is off by less than 0.1 per cent.
+"""
+
+
+def resample(coefficient: DragCoefficient) -> tuple[int, Array, Array]:
+    """First octave, Reynolds numbers (k,) and C_D (k,); constant beyond the file's ends."""
+    first = math.floor(math.log2(coefficient.reynolds[0]))
+    last = math.ceil(math.log2(coefficient.reynolds[-1]))
+    steps = np.arange((last - first) * PER_OCTAVE + 1)
+    nodes = 2.0 ** (first + steps // PER_OCTAVE) * (1.0 + (steps % PER_OCTAVE) / PER_OCTAVE)
+    values = np.interp(np.log(nodes), np.log(coefficient.reynolds), coefficient.cd)
+    return first, nodes, values
