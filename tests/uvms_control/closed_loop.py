@@ -117,18 +117,19 @@ def joint_motion(start, goal, duration, total):
 
 
 def run(model, controller, state, reference, duration, *, allocator: ThrustAllocator | None = None,
-        lag=0.0, noise=None, push=0.0):  # fmt: skip
+        lag=0.0, noise=None, push=0.0, observer=None):  # fmt: skip
     """Close the loop for `duration` s; yields (time, state, wrench, effort) at every tick.
 
     `lag` (s): first-order lag of the achieved wrench; `noise(k, state)`: what the sensors see;
-    `push` (6,): a wrench on the vehicle that nobody observes.
+    `push` (6,): a wrench on the vehicle that nobody observes;
+    `observer`: the model that the observer believes in.
     """
     actual = np.zeros(6)
     for k in range(round(duration / PERIOD) + 1):
         stamp = to_nanoseconds(k * PERIOD)
         seen = state if noise is None else noise(k, state)
         index = min(k, reference.times.size - 1)
-        disturbance = Wrench(stamp, observed(model, seen, reference.q_ddot[index]))
+        disturbance = Wrench(stamp, observed(observer or model, seen, reference.q_ddot[index]))
         odometry, joints = seen.estimates(stamp)
         wrench, joint_command = controller.step(odometry, joints, disturbance, reference)
         yield k * PERIOD, state, wrench.wrench, joint_command.effort

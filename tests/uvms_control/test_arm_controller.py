@@ -8,9 +8,9 @@ from hypothesis import strategies as st
 from scipy.linalg import expm
 
 from uvms_control import ArmControlConfig, ArmController, ControlConfig, Controller
-from uvms_control.arm_controller import sampled_gains
+from uvms_control.arm_controller import floating_inertia, sampled_gains
 from uvms_control.errors import ControlSetupError
-from uvms_dynamics import build_model, load_vehicle
+from uvms_dynamics import build_model, forward_dynamics, load_vehicle, mass_matrix
 
 VEHICLE = load_vehicle()
 MODEL = build_model(VEHICLE)
@@ -38,7 +38,7 @@ def test_sampled_gains_place_the_poles(w, zeta, dt):
 
 
 def test_sampled_gains_tend_to_the_continuous_ones():
-    assert sampled_gains(3.0, 0.8, 0.0) == (9.0, 4.8)
+    assert sampled_gains(3.0, 0.8, 0.0) == pytest.approx((9.0, 4.8), rel=1e-12)
     assert np.allclose(sampled_gains(3.0, 0.8, 1e-4), (9.0, 4.8), rtol=1e-3)
 
 
@@ -48,27 +48,47 @@ def test_sampled_gains_tend_to_the_continuous_ones():
 def test_every_joint_is_stable_under_held_torques(joint, inertia_ratio, sliding):
     """With the friction that the joint has when it moves fast, and when it hardly moves.
 
-    An inertia ratio of 0.5 is a joint half as heavy as the model believes.
+    An inertia ratio of 0.5 is a joint half as heavy as the model believes. The lightest each joint
+    can be is its rotor; there friction counts most.
     """
     data, config = VEHICLE.arm.joints[joint], ArmControlConfig()
     k, d = sampled_gains(config.bandwidth, config.damping_ratio, PERIOD)
-    inertia = data.rotor_inertia_kg_m2
     friction = data.viscous_friction_nm_s
-    steep = 0.0
     if not sliding:
-        steep = data.coulomb_friction_nm / np.radians(data.coulomb_width_deg_s)
+        friction += data.coulomb_friction_nm / np.radians(data.coulomb_width_deg_s)
+    damping = friction / data.rotor_inertia_kg_m2
     # Friction at the steered rate (k / d) e adds to the stiffness, the joint's own damps it.
-    share = (friction + steep) / inertia
-    loop = sampled_loop(k + share * k / d, d, PERIOD, inertia_ratio, share / inertia_ratio)
-    assert np.max(np.abs(np.linalg.eigvals(loop))) < 0.97
+    loop = np.eye(3)
+    stiffness = k + damping * k / d
+    loop[:2, :2] = sampled_loop(stiffness, d, PERIOD, inertia_ratio, damping / inertia_ratio)
+    # The third state is the integral of the error, as an acceleration.
+    loop[2, 0] = config.integral_rate * k * PERIOD
+    from_torque = sampled_loop(1.0, 0.0, PERIOD, inertia_ratio, damping / inertia_ratio)
+    without = sampled_loop(0.0, 0.0, PERIOD, inertia_ratio, damping / inertia_ratio)
+    loop[:2, 2] = (from_torque - without)[:, 0]
+    # Dry friction slows the integral's pole down, to a few seconds at most.
+    assert np.max(np.abs(np.linalg.eigvals(loop))) < (0.98 if sliding else 0.998)
 
 
 def test_the_law_has_the_slope_of_the_sampled_gains():
-    arm = ArmController(ArmControlConfig(), np.ones(4))
-    k, d = sampled_gains(arm.config.bandwidth, arm.config.damping_ratio, PERIOD)
-    law = arm.law(PERIOD)
+    config = ArmControlConfig()
+    k, d = sampled_gains(config.bandwidth, config.damping_ratio, PERIOD)
+    law = ArmController(config, np.ones(4)).law(PERIOD)
     assert np.allclose(law.stiffness, k)
     assert np.allclose(law.damping, d)
+
+
+def test_floating_inertia_makes_torque_into_acceleration():
+    """S a on the joints alone changes their acceleration by exactly a, vehicle free."""
+    q, q_dot = FORWARD, np.array([0.1, -0.2, 0.1, 0.3])
+    nu, level = np.array([0.2, -0.1, 0.1, 0.05, 0.1, -0.1]), np.array([0.0, 0.0, 0.0, 1.0])
+    wanted = np.array([0.3, -0.2, 0.5, 1.0])
+    extra = floating_inertia(mass_matrix(MODEL, q)) @ wanted
+    tau = np.arange(10.0)
+    before = forward_dynamics(MODEL, level, nu, q, q_dot, tau)
+    tau[6:] += extra
+    after = forward_dynamics(MODEL, level, nu, q, q_dot, tau)
+    assert np.allclose(after[6:] - before[6:], wanted, atol=1e-10)
 
 
 def test_effort_stays_within_the_limits():
@@ -79,6 +99,19 @@ def test_effort_stays_within_the_limits():
     assert np.array_equal(
         arm.effort(-np.ones(4), np.zeros(4), 100.0 * np.eye(4), np.zeros(4), PERIOD), -limits
     )
+
+
+def test_the_integral_is_bounded_and_does_not_wind_up():
+    config = ArmControlConfig(integral_limit=0.25)
+    arm = ArmController(config, np.full(4, 2.0))
+    small, zero, light = np.full(4, 1e-3), np.zeros(4), 0.1 * np.eye(4)
+    for _ in range(5000):
+        arm.effort(small, zero, light, zero, PERIOD)
+    assert np.allclose(arm.integral, 0.5)
+    arm.reset()
+    for _ in range(100):
+        arm.effort(np.ones(4), zero, 100.0 * light, zero, PERIOD)
+    assert not arm.integral.any()
 
 
 def test_wrong_effort_limits_are_named():

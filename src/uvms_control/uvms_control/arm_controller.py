@@ -1,7 +1,5 @@
 """The arm's law: S-surface feedback per joint with the arm's model as Delta-u, eq. (19)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from uvms_control.config import ArmControlConfig
@@ -29,23 +27,41 @@ def sampled_gains(bandwidth: float, damping_ratio: float, dt: float) -> tuple[fl
     return (1.0 + a1 + a0) / dt**2, (3.0 + a1 - a0) / (2.0 * dt)
 
 
-@dataclass(frozen=True)
+def floating_inertia(mass: Array) -> Array:
+    """Joint-space inertia (n, n) of an arm whose vehicle floats: S = M_qq - M_qb M_bb^-1 M_bq.
+
+    `mass` (6 + n, 6 + n) of the whole system. A joint torque S a with no other change of force
+    accelerates the joints by exactly a while the vehicle gives way; with M_qq alone the gain of a
+    joint that can roll the vehicle would be more than twice the one asked for.
+    """
+    coupling = mass[:6, 6:]
+    return mass[6:, 6:] - coupling.T @ np.linalg.solve(mass[:6, :6], coupling)
+
+
 class ArmController:
-    """tau = K (u + Delta-u), K = A M_qq(q): gains mean bandwidth, whatever the joint carries."""
+    """tau = K (u + Delta-u), K = A S(q): gains mean bandwidth, whatever the joint carries.
 
-    config: ArmControlConfig
-    effort_limit: Array  # (n,) N m
+    S(q) is the joint-space inertia of the arm on the floating vehicle, `floating_inertia`.
+    """
 
-    def __post_init__(self) -> None:
-        limits = np.array(self.effort_limit, dtype=np.float64)
-        if not (limits > 0.0).all():
-            raise ControlSetupError(f"arm effort limits: {limits} N m, expected positive numbers")
-        object.__setattr__(self, "effort_limit", limits)
+    def __init__(self, config: ArmControlConfig, effort_limit: Array):
+        """`effort_limit` (n,): largest joint torques in N m."""
+        self.effort_limit = np.array(effort_limit, dtype=np.float64)
+        if not (self.effort_limit > 0.0).all():
+            raise ControlSetupError(
+                f"arm effort limits: {self.effort_limit} N m, expected positive numbers"
+            )
+        self._config = config
+        self.reset()
+
+    def reset(self) -> None:
+        """Empty the integral."""
+        self.integral = np.zeros_like(self.effort_limit)
 
     def law(self, dt: float) -> SSurface:
         """The S-surface whose slope near zero has the bandwidth asked for at the period dt (s)."""
-        k, d = sampled_gains(self.config.bandwidth, self.config.damping_ratio, dt)
-        one, n = self.config.amplitude, self.effort_limit.size
+        k, d = self._gains(dt)
+        one, n = self._config.amplitude, self.effort_limit.size
         # With an error scale of A / (2 k) and k_error = 1 the slope A k_error / (2 scale) is k.
         return SSurface(
             k_error=np.ones(n),
@@ -62,16 +78,29 @@ class ArmController:
         as negative damping and chatter about zero; at the reference rate alone a joint would stick
         wherever its error is worth less than its dry friction.
         """
-        k, d = sampled_gains(self.config.bandwidth, self.config.damping_ratio, dt)
+        k, d = self._gains(dt)
         return q_dot + (k / d) * error
 
     def effort(
         self, error: Array, rate: Array, inertia: Array, feed_forward: Array, dt: float
     ) -> Array:
-        """Joint torques (n,) N m within the limits: M_qq A S(e, e_dot) + feed-forward, eq. (19).
+        """Joint torques (n,) N m within the limits: K u + feed-forward + integral, eq. (19).
 
-        `error` q_d - q, `rate` of it, `inertia` M_qq(q) (n, n), `feed_forward` (n,) N m: K Delta-u,
-        the torque that the model needs for the reference acceleration.
+        `error` q_d - q, `rate` of it, `inertia` S(q) (n, n), `feed_forward` (n,) N m: the torque
+        that the model needs for the reference acceleration. With the integral it is K Delta-u.
         """
         feedback = inertia @ self.law(dt).acceleration(error, rate)
-        return np.clip(feedback + feed_forward, -self.effort_limit, self.effort_limit)
+        stiffness, _ = self._gains(dt)
+        growth = self._config.integral_rate * stiffness * np.diag(inertia) * error * dt
+        wanted = feedback + feed_forward + self.integral
+        self._integrate(growth, wanted)
+        return np.clip(wanted, -self.effort_limit, self.effort_limit)
+
+    def _integrate(self, growth: Array, wanted: Array) -> None:
+        """Grow the integral within its limit, not further into a saturated torque (anti-windup)."""
+        windup = (np.abs(wanted) >= self.effort_limit) & (growth * wanted > 0.0)
+        limit = self._config.integral_limit * self.effort_limit
+        self.integral = np.clip(self.integral + np.where(windup, 0.0, growth), -limit, limit)
+
+    def _gains(self, dt: float) -> tuple[float, float]:
+        return sampled_gains(self._config.bandwidth, self._config.damping_ratio, dt)

@@ -49,7 +49,7 @@ class ArmControlConfig(Config):
     """S-surface law of the joints; the same for every joint, scaled by the joint-space inertia."""
 
     bandwidth: float = Field(
-        default=4.0,
+        default=6.0,
         gt=0.0,
         le=100.0,
         description="natural frequency of each joint's loop for small errors, rad/s",
@@ -58,7 +58,19 @@ class ArmControlConfig(Config):
         default=1.0, gt=0.0, le=10.0, description="damping ratio for small errors, no unit"
     )
     amplitude: float = Field(
-        default=2.0, gt=0.0, description="largest acceleration of the law, rad/s^2"
+        default=10.0, gt=0.0, description="largest acceleration of the law, rad/s^2"
+    )
+    integral_rate: float = Field(
+        default=1.0,
+        ge=0.0,
+        le=10.0,
+        description="rate at which the integral takes over a steady load, 1/s; 0 for none",
+    )
+    integral_limit: float = Field(
+        default=0.5,
+        ge=0.0,
+        le=1.0,
+        description="bound on the integral as a share of the joint's effort limit",
     )
     friction_compensation: float = Field(
         default=1.0,

@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from uvms_control.arm_controller import ArmController
+from uvms_control.arm_controller import ArmController, floating_inertia
 from uvms_control.checks import checked, checked_quaternion, checked_same_stamp
 from uvms_control.compensation import EndEffectorCompensation, JointCorrection
 from uvms_control.config import ControlConfig
 from uvms_control.reference import ReferenceSample, check_reference, sample_reference
-from uvms_control.tracking_error import tracking_error
-from uvms_control.vehicle_controller import VehicleCommand, VehicleController
+from uvms_control.tracking_error import TrackingError, tracking_error
+from uvms_control.vehicle_controller import VehicleController
 from uvms_control.vehicle_data import effort_limits, joint_limits
 from uvms_dynamics import (
     Vehicle,
@@ -49,6 +49,7 @@ class Controller:
         self._stamp: int | None = None
         self._reference: Reference | None = None
         self.vehicle.reset()
+        self.arm.reset()
         self.compensation.reset()
 
     def step(
@@ -66,24 +67,27 @@ class Controller:
         self._check(odometry, joints, disturbance, reference)
         dt = self._elapsed(odometry.stamp)
         desired = sample_reference(reference, odometry.stamp)
-        inertia = mass_matrix(self._model, joints.position)
-        command = self._vehicle_command(odometry, inertia[:6, :6], disturbance, desired, dt)
-        effort = self._joint_effort(odometry, joints, inertia[6:, 6:], desired, command, dt)
-        return Wrench(odometry.stamp, command.wrench), JointCommand(odometry.stamp, effort)
+        tracking = tracking_error(odometry, desired)
+        mass = mass_matrix(self._model, joints.position)
+        wrench = self._wrench(odometry, mass[:6, :6], disturbance, tracking, dt)
+        feed_forward = self._arm_model_torque(odometry, joints, desired, tracking)
+        inertia = floating_inertia(mass)
+        effort = self._joint_effort(odometry, joints, inertia, feed_forward, desired, dt)
+        return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
-    def _vehicle_command(
+    def _wrench(
         self,
         odometry: Odometry,
         inertia: Array,
         disturbance: Wrench | None,
-        desired: ReferenceSample,
+        tracking: TrackingError,
         dt: float,
-    ) -> VehicleCommand:
+    ) -> Array:
         if not self._config.enabled:
-            return VehicleCommand(np.zeros(6), np.zeros(6))
-        feed_forward = self._config.observer and disturbance is not None
-        known = disturbance.wrench if feed_forward else np.zeros(6)
-        tracking = tracking_error(odometry, desired)
+            return np.zeros(6)
+        known = np.zeros(6)
+        if self._config.observer and disturbance is not None:
+            known = disturbance.wrench
         return self.vehicle.step(odometry, inertia, known, tracking, dt)
 
     def _joint_effort(
@@ -91,18 +95,17 @@ class Controller:
         odometry: Odometry,
         joints: JointStates,
         inertia: Array,
+        feed_forward: Array,
         desired: ReferenceSample,
-        command: VehicleCommand,
         dt: float,
     ) -> Array:
         correction = self._correction(odometry, desired, dt)
+        q_dot = desired.q_dot + correction.rate
         error = desired.q + correction.angle - joints.position
-        rate = desired.q_dot + correction.rate - joints.velocity
-        model = self._arm_model_torque(odometry, joints, desired, command)
-        steered = self.arm.steered_rate(error, desired.q_dot + correction.rate, dt)
+        steered = self.arm.steered_rate(error, q_dot, dt)
         friction = joint_passive_torque(self._model, self._away_from_stops, steered)
-        feed_forward = model - self._config.arm.friction_compensation * friction
-        return self.arm.effort(error, rate, inertia, feed_forward, dt)
+        load = feed_forward - self._config.arm.friction_compensation * friction
+        return self.arm.effort(error, q_dot - joints.velocity, inertia, load, dt)
 
     def _correction(
         self, odometry: Odometry, desired: ReferenceSample, dt: float
@@ -116,17 +119,20 @@ class Controller:
         odometry: Odometry,
         joints: JointStates,
         desired: ReferenceSample,
-        command: VehicleCommand,
+        tracking: TrackingError,
     ) -> Array:
         """K Delta-u of eq. (19): what the model needs for the reference acceleration (n,) N m.
 
-        Weight, buoyancy, drag and the vehicle's own acceleration are in it, friction is not.
+        Weight, buoyancy, drag and the vehicle's reference acceleration are in it, friction is not.
+        The vehicle's feedback acceleration is left out: what it really causes is uncertain when a
+        disturbance is not fed forward or a thruster saturates.
         """
+        vehicle = tracking.acceleration if self._config.enabled else np.zeros(6)
         whole = inverse_dynamics(
             self._model,
             odometry.quaternion,
             odometry.nu,
-            command.acceleration,
+            vehicle,
             joints.position,
             joints.velocity,
             desired.q_ddot,

@@ -1,7 +1,5 @@
 """The vehicle's law: S-surface feedback, model dynamics and observed disturbance, eq. (22)."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from uvms_control.config import VehicleControlConfig
@@ -12,14 +10,6 @@ from uvms_dynamics.signals import Array, Odometry
 
 # The integral rests while the S-surface's argument is beyond this: u is then above tanh(1) = 0.76.
 INTEGRATION_RANGE = 2.0
-
-
-@dataclass(frozen=True)
-class VehicleCommand:
-    """What the vehicle shall do now, in its body frame."""
-
-    wrench: Array  # (6,) N, N m about the body origin
-    acceleration: Array  # (6,) nu_dot that this wrench is meant to cause
 
 
 class VehicleController:
@@ -50,8 +40,10 @@ class VehicleController:
         disturbance: Array,
         tracking: TrackingError,
         dt: float,
-    ) -> VehicleCommand:
-        """Eq. (22): tau = M(q) [nu_dot_d + A (S(e, e_dot) + Delta-u)] + C nu + D nu - F_dis.
+    ) -> Array:
+        """Wrench (6,) for the vehicle in its body frame, eq. (22).
+
+            tau = M(q) [nu_dot_d + A (S(e, e_dot) + Delta-u)] + C nu + D nu - F_dis
 
         `inertia` M (6, 6): vehicle block of the whole system's mass matrix, added mass and arm
         included. `disturbance` F_dis (6,): what acts ON the vehicle (zero to leave it out);
@@ -61,7 +53,7 @@ class VehicleController:
         feedback = self.law.acceleration(tracking.error, tracking.rate, self.delta_u)
         acceleration = tracking.acceleration + feedback
         bias = hull_bias_wrench(self._model, odometry.nu)
-        return VehicleCommand(inertia @ acceleration + bias - disturbance, acceleration)
+        return inertia @ acceleration + bias - disturbance
 
     def _integrate(self, tracking: TrackingError, dt: float) -> None:
         """Integrate where the law is not saturated, within the limit (anti-windup)."""
