@@ -164,3 +164,5 @@ def _tell(session: Session, summary: dict[str, Any]) -> int:
     return 0 if summary["completed"] else 1
 
 
+if __name__ == "__main__":
+    raise SystemExit(main())

@@ -24,7 +24,8 @@ class Pace:
             pace = cls("", 0.0)
         if pace.name != "realtime" or not 0.0 < pace.factor <= 1000.0:
             raise RunError(
-                f"pace {text!r}: choose lockstep, realtime, or realtime:FACTOR with 0 < FACTOR <= 1000"
+                f"pace {text!r}: choose lockstep, realtime, or realtime:FACTOR"
+                " with 0 < FACTOR <= 1000"
             )
         return pace
 

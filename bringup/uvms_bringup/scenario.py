@@ -40,7 +40,7 @@ class JointMotion(Config):
 
 
 class Goal(Config):
-    """What is asked of the planner: a path of the end effector, a motion of the joints, or nothing."""
+    """What is asked of the planner: a path of the end effector, a joint motion, or nothing."""
 
     path: PathSpec | None = Field(None, description="path of the end effector from where it starts")
     joints: JointMotion | None = Field(None, description="motion of the joints")

@@ -14,6 +14,7 @@ import yaml
 
 from uvms_bringup.errors import RunError
 from uvms_bringup.log.encode import SignalWriter
+from uvms_bringup.log.goal_file import path_to_json
 from uvms_bringup.log.writer import LogWriter
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
@@ -21,7 +22,6 @@ from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
 from uvms_bringup.summary import summarise
 from uvms_dynamics import Vehicle, dump_vehicle
-from uvms_dynamics.messages.parts import path_to_json
 from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds
 
 Goal = PathGoal | JointGoal | None

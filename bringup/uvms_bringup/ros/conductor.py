@@ -22,7 +22,12 @@ START_PATIENCE_S = 90.0
 """Wall time for all nodes to come up and find each other; the first start compiles kernels."""
 ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0
-LOOP_END = (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND, topics.WRENCH_ACHIEVED, topics.ALLOCATION)
+LOOP_END = (
+    topics.THRUSTER_COMMAND,
+    topics.JOINT_COMMAND,
+    topics.WRENCH_ACHIEVED,
+    topics.ALLOCATION,
+)
 
 
 class Conductor(Node):
@@ -41,9 +46,7 @@ class Conductor(Node):
             self._take_status,
             qos_profile(topics.DIAGNOSTICS.qos),
         )
-        self._ready = {
-            node: self.create_client(Trigger, f"{node}/ready") for node in topics.NODES
-        }
+        self._ready = {node: self.create_client(Trigger, f"{node}/ready") for node in topics.NODES}
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
 

@@ -12,7 +12,9 @@ from uvms_dynamics.config import Config
 from uvms_dynamics.ros.parameters import flatten
 
 
-def node_parameters(scenario: Scenario, vehicle_file: Path, pace: Pace) -> dict[str, dict[str, Any]]:
+def node_parameters(
+    scenario: Scenario, vehicle_file: Path, pace: Pace
+) -> dict[str, dict[str, Any]]:
     """ROS parameters by node."""
     common = {
         "vehicle_file": str(vehicle_file),

@@ -1,4 +1,4 @@
-"""`uvms run`: the six nodes on a real ROS 2 graph, led and recorded from the first tick to the last."""
+"""`uvms run`: the six nodes on a real ROS 2 graph, led and recorded from first to last tick."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -35,7 +35,7 @@ def run_graph(
     """Run a scenario on the node graph; True if it came to its end.
 
     Args:
-        folder: of this run, with `vehicle.yaml` in it; parameter and log files of the nodes go there.
+        folder: of this run, with `vehicle.yaml` in it; the nodes' parameters and logs go there.
         write: takes every message, as `Recorder` says.
         progress: called with the simulation stamp in ns and a line of text.
 

@@ -141,9 +141,7 @@ class PlantNode(UvmsNode):
             "going on with the safe command"
         )
         self.get_logger().warning(text)
-        self.report(
-            self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts
-        )
+        self.report(self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts)
         self._advance()
 
     def _stale(self, name: str) -> bool:

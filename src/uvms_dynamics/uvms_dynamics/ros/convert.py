@@ -1,6 +1,6 @@
 """Nested dicts of plain values to rclpy messages; `uvms_dynamics.messages` does the rest."""
 
-from functools import lru_cache
+from functools import cache
 from importlib import import_module
 from typing import Any
 
@@ -9,7 +9,7 @@ from rosidl_parser.definition import AbstractNestedType, NamespacedType
 from uvms_dynamics.topics import Action, Topic
 
 
-@lru_cache(maxsize=None)
+@cache
 def interface_class(type_name: str) -> type:
     """The class of `package/msg/Name`, `package/srv/Name` or `package/action/Name`."""
     package, kind, name = type_name.split("/")
@@ -43,7 +43,7 @@ def _fill(msg: Any, data: dict[str, Any]) -> Any:
     return msg
 
 
-@lru_cache(maxsize=None)
+@cache
 def _element_class(cls: type, name: str) -> type:
     slot = cls.SLOT_TYPES[list(cls.get_fields_and_field_types()).index(name)]
     if not isinstance(slot, AbstractNestedType) or not isinstance(slot.value_type, NamespacedType):

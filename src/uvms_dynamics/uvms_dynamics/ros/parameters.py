@@ -1,4 +1,4 @@
-"""ROS parameters derived from a configuration's fields: name, type, default, bounds, description."""
+"""ROS parameters from a configuration's fields: name, type, default, bounds, description."""
 
 from collections.abc import Iterator
 from typing import Any, TypeVar
@@ -83,4 +83,5 @@ def _bounds(field: FieldInfo) -> tuple[float | None, float | None]:
 def _store(values: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
     for part in path[:-1]:
         values = values.setdefault(part, {})
-    values[path[-1]] = list(value) if hasattr(value, "tolist") or isinstance(value, tuple) else value
+    is_array = hasattr(value, "tolist") or isinstance(value, tuple)
+    values[path[-1]] = list(value) if is_array else value

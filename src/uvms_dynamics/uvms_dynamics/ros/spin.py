@@ -59,8 +59,19 @@ class Spinner:
 
     def spin_once(self, timeout: float) -> None:
         """Serve what comes within the time-out, s."""
-        self._executor.spin_until_future_complete(self.done, timeout_sec=min(timeout, self._sleep()))
+        wait = min(timeout, self._sleep())
+        self._executor.spin_until_future_complete(self.done, timeout_sec=wait)
         self._wake()
+
+    def spin_for(self, future: Future, timeout: float) -> bool:
+        """Serve callbacks until the future is done; False after the time-out, s, or a `stop`."""
+        end = time.monotonic() + timeout
+        while not future.done() and not self.done.done():
+            left = end - time.monotonic()
+            self._executor.spin_until_future_complete(future, timeout_sec=max(min(left, IDLE), 0.0))
+            if left <= 0.0:
+                break
+        return future.done()
 
     def shutdown(self) -> None:
         """Destroy the nodes and leave ROS."""
