@@ -1,0 +1,11 @@
+"""Errors of the observer package; bad signals raise `uvms_dynamics.errors.SignalError`."""
+
+from uvms_dynamics.errors import UvmsError
+
+
+class ObserverError(UvmsError):
+    """Root of this package's own errors."""
+
+
+class NotAlignedError(ObserverError):
+    """The navigation filter has had no IMU sample yet, so that it has no attitude to start from."""

@@ -1,0 +1,60 @@
+"""Parameters of the navigation filter; what the sensors are like is in the vehicle file."""
+
+from pydantic import Field
+
+from uvms_dynamics.config import Config
+
+Vector3 = tuple[float, float, float]
+
+
+class NoiseFloor(Config):
+    """Least measurement noise (std) that the filter believes: no sensor is perfect to it."""
+
+    attitude_deg: float = Field(0.001, gt=0.0, description="roll, pitch and heading, deg")
+    velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
+    depth_m: float = Field(1e-4, gt=0.0, description="pressure sensor, m of water")
+    position_m: float = Field(1e-2, gt=0.0, description="GPS, m")
+
+
+class NavigationConfig(Config):
+    """How the navigation filter starts and how far it trusts model and sensors."""
+
+    initial_position_m: Vector3 = Field(
+        (0.0, 0.0, 0.0),
+        description="where the mission starts: body origin in map_ned, m; the depth comes from "
+        "the first pressure sample",
+    )
+    initial_position_std_m: float = Field(
+        0.01, gt=0.0, description="std of the initial north and east, m"
+    )
+    initial_depth_std_m: float = Field(
+        100.0, gt=0.0, description="std of the initial depth before the first pressure sample, m"
+    )
+    initial_velocity_std_m_s: float = Field(
+        0.5, gt=0.0, description="std of the initial velocity about rest, m/s"
+    )
+    gyro_noise_scale: float = Field(
+        1.0, gt=0.0, le=1000.0, description="factor on the gyro noise of the vehicle file"
+    )
+    accelerometer_noise_scale: float = Field(
+        1.0, gt=0.0, le=1000.0, description="factor on the accelerometer noise of the vehicle file"
+    )
+    latency_s: float = Field(
+        0.25,
+        ge=0.0,
+        le=10.0,
+        description="a sample that comes this much late is still taken, at its own stamp, s",
+    )
+    gate_probability: float = Field(
+        0.9999,
+        gt=0.5,
+        lt=1.0,
+        description="share of good measurements that the chi-square gate lets in",
+    )
+    gate_timeout_s: float = Field(
+        5.0,
+        gt=0.0,
+        description="when a sensor has been refused for this long the filter doubts itself: it "
+        "widens its covariance and takes the sensor in, s",
+    )
+    noise_floor: NoiseFloor = NoiseFloor()

@@ -1,0 +1,66 @@
+"""The Kalman correction of one measurement: gate, gain, Joseph form, and putting the error back.
+
+    S = H P H^T + N,  d^2 = r^T S^-1 r,  K = P H^T S^-1,
+    e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
+
+The Joseph form keeps P positive semidefinite under rounding. The readable twin is `reference.py`.
+"""
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics.rotations import quat_multiply, rotation_vector_to_quat
+from uvms_dynamics.signals import Array
+from uvms_observer.navigation.state import SIZE, NavigationState
+
+
+@njit(cache=True)
+def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: float) -> float:
+    """Correct the state in place, unless the residual's distance is beyond the gate.
+
+    Args:
+        H: (m, 20) derivative of the measurement by the error state.
+        residual: (m,) measured minus expected.
+        N: (m, m) covariance of the measurement's noise.
+        gate: largest d^2 that is let in.
+
+    Returns:
+        d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed.
+    """
+    PHt = state.covariance @ np.ascontiguousarray(H.T)
+    S_inverse = np.linalg.inv(H @ PHt + N)
+    distance = residual.dot(S_inverse @ residual)
+    if not distance <= gate:
+        return distance
+    K = PHt @ S_inverse
+    _correct_covariance(state.covariance, K, H, N)
+    _put_back(state, K @ residual)
+    return distance
+
+
+@njit(cache=True)
+def _correct_covariance(P: Array, K: Array, H: Array, N: Array) -> None:
+    left = -(K @ H)
+    for i in range(SIZE):
+        left[i, i] += 1.0
+    joseph = left @ P @ np.ascontiguousarray(left.T) + K @ N @ np.ascontiguousarray(K.T)
+    for i in range(SIZE):
+        for j in range(SIZE):
+            P[i, j] = 0.5 * (joseph[i, j] + joseph[j, i])
+
+
+@njit(cache=True)
+def _put_back(state: NavigationState, e: Array) -> None:
+    """Add the error, state <- state (+) e; the attitude error turns about the axes of map_ned."""
+    turned = quat_multiply(rotation_vector_to_quat(e[6:9]), state.quaternion)
+    length = np.sqrt(turned.dot(turned))
+    for i in range(3):
+        state.position[i] += e[i]
+        state.velocity[i] += e[3 + i]
+        state.gyro_bias[i] += e[9 + i]
+        state.accelerometer_bias[i] += e[12 + i]
+        state.compass_bias[i] += e[15 + i]
+    for i in range(2):
+        state.instrument_bias[i] += e[18 + i]
+    for i in range(4):
+        state.quaternion[i] = turned[i] / length

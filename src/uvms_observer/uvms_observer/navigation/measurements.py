@@ -1,0 +1,96 @@
+"""What each sensor should read at the estimated state, and its derivative by the error state.
+
+Sensors are mounted at the lever arm d from the IMU (body axes), which turns with w = w_m - b_g:
+
+    gyrocompass  R_m = Exp(C (b_c + n)) R
+    DVL          (1 + s) (R^T v + w x d) + n
+    pressure     (p + R d)_z + b_p + n          (as depth)
+    GPS          p + R d + n
+
+C has the gyrocompass's roll, pitch and heading axes in its columns. Each function returns the
+expected value and its derivative H (m, 20); tests check H against finite differences.
+"""
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics.rotations import (
+    quat_conjugate,
+    quat_multiply,
+    quat_to_matrix,
+    quat_to_rotation_vector,
+    rotation_vector_to_quat,
+    skew,
+)
+from uvms_dynamics.signals import Array
+from uvms_observer.navigation.state import SIZE, NavigationState
+
+UPRIGHT = 1e-6
+"""Cosine of the pitch below which the heading has no meaning and any level axis will do."""
+
+
+@njit(cache=True)
+def compass_axes(quaternion: Array) -> Array:
+    """Axes in map_ned about which roll, pitch and heading (ZYX) turn, as columns (3, 3)."""
+    R = quat_to_matrix(quaternion)
+    level = np.sqrt(R[0, 0] ** 2 + R[1, 0] ** 2)
+    axes = np.zeros((3, 3))
+    axes[:, 0] = R[:, 0]
+    if level > UPRIGHT:
+        axes[0, 1] = -R[1, 0] / level
+        axes[1, 1] = R[0, 0] / level
+    else:
+        axes[:, 1] = R[:, 1]
+    axes[2, 2] = 1.0
+    return axes
+
+
+@njit(cache=True)
+def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
+    """Rotation vector (3,) rad, map_ned, from the expected to the measured attitude, and H."""
+    axes = compass_axes(state.quaternion)
+    turn = rotation_vector_to_quat(axes @ state.compass_bias)
+    expected = quat_multiply(turn, state.quaternion)
+    H = np.zeros((3, SIZE))
+    for i in range(3):
+        H[i, 6 + i] = 1.0
+    H[:, 15:18] = axes
+    return quat_to_rotation_vector(quat_multiply(measured, quat_conjugate(expected))), H
+
+
+@njit(cache=True)
+def velocity(state: NavigationState, lever: Array, rate: Array) -> tuple[Array, Array]:
+    """Velocity that the DVL should read (3,) m/s, body axes, and H."""
+    R = quat_to_matrix(state.quaternion)
+    arm = skew(lever)
+    motion = R.T @ state.velocity - arm @ (rate - state.gyro_bias)
+    scale = 1.0 + state.instrument_bias[0]
+    H = np.zeros((3, SIZE))
+    H[:, 3:6] = scale * R.T
+    H[:, 6:9] = scale * (R.T @ skew(state.velocity))
+    H[:, 9:12] = scale * arm
+    H[:, 18] = motion
+    return scale * motion, H
+
+
+@njit(cache=True)
+def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
+    """Depth that the pressure should show (1,) m, and H."""
+    offset = quat_to_matrix(state.quaternion) @ lever
+    H = np.zeros((1, SIZE))
+    H[0, 2] = 1.0
+    H[0, 6] = offset[1]
+    H[0, 7] = -offset[0]
+    H[0, 19] = 1.0
+    return np.array([state.position[2] + offset[2] + state.instrument_bias[1]]), H
+
+
+@njit(cache=True)
+def position(state: NavigationState, lever: Array) -> tuple[Array, Array]:
+    """Position of the antenna (3,) m, map_ned, and H."""
+    offset = quat_to_matrix(state.quaternion) @ lever
+    H = np.zeros((3, SIZE))
+    for i in range(3):
+        H[i, i] = 1.0
+    H[:, 6:9] = -skew(offset)
+    return state.position + offset, H

@@ -1,0 +1,142 @@
+"""Strapdown propagation of the state and of its error covariance over one IMU interval.
+
+Nominal state, with mean rate w = w_m - b_g and mean specific force f = f_m - b_a of the interval:
+
+    R_mid = R Exp(w dt/2),  a = R_mid f + g e_z,
+    p += v dt + a dt^2/2,   v += a dt,   R <- R Exp(w dt),   b <- phi b  (gyro, acc., compass).
+
+Error state (derivation: docs/navigation.md), with A = [R_mid f]x:
+
+    dtheta += -R_mid db_g dt
+    dv     += -A dtheta dt - R_mid db_a dt + A R_mid db_g dt^2/2
+    dp     +=  dv dt - A dtheta dt^2/2 - R_mid db_a dt^2/2 + A R_mid db_g dt^3/4
+
+The rotation of the Earth is left out: the map is an inertial frame here, as it is in the plant. The
+readable twin with full matrices is `reference.py`.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+
+from uvms_dynamics.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
+from uvms_dynamics.signals import Array
+from uvms_observer.navigation.state import SIZE, NavigationState
+
+
+class ProcessNoise(NamedTuple):
+    """What makes the error grow between measurements."""
+
+    gyro: float  # rad^2/s, spectral density of the rate's white noise
+    accelerometer: float  # m^2/s^3, of the specific force's
+    bias_variance: Array  # (9,) stationary variances of gyro, accelerometer and compass biases
+    bias_time_constant: float  # s, of these first-order Gauss-Markov biases
+
+
+@njit(cache=True)
+def propagate(
+    state: NavigationState,
+    rate: Array,
+    force: Array,
+    dt: float,
+    gravity: float,
+    noise: ProcessNoise,
+) -> None:
+    """Advance the state in place by dt.
+
+    Args:
+        rate: mean of the gyro's readings over the interval, (3,) rad/s, body.
+        force: mean of the accelerometer's readings, (3,) m/s^2, body.
+        dt: length of the interval, s.
+        gravity: m/s^2, down.
+        noise: see `ProcessNoise`.
+    """
+    half = rotation_vector_to_quat((rate - state.gyro_bias) * (0.5 * dt))
+    middle = quat_multiply(state.quaternion, half)
+    R = quat_to_matrix(middle)
+    thrust = np.zeros(3)  # specific force in the world
+    for i in range(3):
+        for k in range(3):
+            thrust[i] += R[i, k] * (force[k] - state.accelerometer_bias[k])
+    phi = np.exp(-dt / noise.bias_time_constant)
+    _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity, phi)
+    _advance_covariance(state.covariance, R, thrust, dt, phi, noise)
+
+
+@njit(cache=True)
+def _advance_mean(
+    state: NavigationState,
+    quaternion: Array,
+    thrust: Array,
+    dt: float,
+    gravity: float,
+    phi: float,
+) -> None:
+    for i in range(3):
+        acceleration = thrust[i] + (gravity if i == 2 else 0.0)
+        state.position[i] += (state.velocity[i] + 0.5 * acceleration * dt) * dt
+        state.velocity[i] += acceleration * dt
+        state.gyro_bias[i] *= phi
+        state.accelerometer_bias[i] *= phi
+        state.compass_bias[i] *= phi
+    length = np.sqrt(quaternion.dot(quaternion))
+    for i in range(4):
+        state.quaternion[i] = quaternion[i] / length
+
+
+@njit(cache=True)
+def _advance_covariance(
+    P: Array, R: Array, thrust: Array, dt: float, phi: float, noise: ProcessNoise
+) -> None:
+    """P <- F P F^T + Q: F on every row of the symmetric P, then on every row of the transpose."""
+    for i in range(SIZE):
+        _transition(P[i], R, thrust, dt, phi)
+    for i in range(SIZE):
+        for j in range(i):
+            P[i, j], P[j, i] = P[j, i], P[i, j]
+    for i in range(SIZE):
+        _transition(P[i], R, thrust, dt, phi)
+    for i in range(SIZE):
+        for j in range(i):
+            mean = 0.5 * (P[i, j] + P[j, i])
+            P[i, j] = mean
+            P[j, i] = mean
+    _add_noise(P, dt, phi, noise)
+
+
+@njit(cache=True)
+def _add_noise(P: Array, dt: float, phi: float, noise: ProcessNoise) -> None:
+    for i in range(3):
+        P[i, i] += noise.accelerometer * dt**3 / 3.0
+        P[i, 3 + i] += 0.5 * noise.accelerometer * dt**2
+        P[3 + i, i] += 0.5 * noise.accelerometer * dt**2
+        P[3 + i, 3 + i] += noise.accelerometer * dt
+        P[6 + i, 6 + i] += noise.gyro * dt
+    for i in range(9):
+        P[9 + i, 9 + i] += (1.0 - phi * phi) * noise.bias_variance[i]
+
+
+@njit(cache=True)
+def _transition(e: Array, R: Array, thrust: Array, dt: float, phi: float) -> None:
+    """Carry one error state (20,) over the interval in place, e <- F e."""
+    g0 = R[0, 0] * e[9] + R[0, 1] * e[10] + R[0, 2] * e[11]  # gyro bias in the world
+    g1 = R[1, 0] * e[9] + R[1, 1] * e[10] + R[1, 2] * e[11]
+    g2 = R[2, 0] * e[9] + R[2, 1] * e[10] + R[2, 2] * e[11]
+    # the attitude error in the middle of the interval turns the specific force
+    v0, v1, v2 = e[6] - 0.5 * dt * g0, e[7] - 0.5 * dt * g1, e[8] - 0.5 * dt * g2
+    f0, f1, f2 = thrust[0], thrust[1], thrust[2]
+    a0 = v1 * f2 - v2 * f1 - (R[0, 0] * e[12] + R[0, 1] * e[13] + R[0, 2] * e[14])
+    a1 = v2 * f0 - v0 * f2 - (R[1, 0] * e[12] + R[1, 1] * e[13] + R[1, 2] * e[14])
+    a2 = v0 * f1 - v1 * f0 - (R[2, 0] * e[12] + R[2, 1] * e[13] + R[2, 2] * e[14])
+    e[0] += (e[3] + 0.5 * dt * a0) * dt
+    e[1] += (e[4] + 0.5 * dt * a1) * dt
+    e[2] += (e[5] + 0.5 * dt * a2) * dt
+    e[3] += a0 * dt
+    e[4] += a1 * dt
+    e[5] += a2 * dt
+    e[6] -= g0 * dt
+    e[7] -= g1 * dt
+    e[8] -= g2 * dt
+    for i in range(9, 18):
+        e[i] *= phi

@@ -1,0 +1,60 @@
+"""What the filter knows: the nominal state and the covariance of its error.
+
+The error state e (20,) is, with truth = estimate (+) error,
+
+    e = (dp, dv, dtheta, db_g, db_a, db_c, ds, db_p):  R = Exp(dtheta) R_hat,  all else additive.
+
+dp, dv and dtheta are in the axes of map_ned. The point whose position and velocity are estimated is
+the IMU, where its accelerometers measure: so no angular acceleration is ever needed; the pose of
+the body origin follows from the mounting position.
+
+The last eight are errors of sensors that do not average out. Most of them cannot be told apart from
+the motion (a heading bias from a drift, say): they are there so that the covariance knows of them.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_dynamics.signals import Array
+
+POSITION = slice(0, 3)
+VELOCITY = slice(3, 6)
+ATTITUDE = slice(6, 9)
+GYRO_BIAS = slice(9, 12)
+ACCELEROMETER_BIAS = slice(12, 15)
+COMPASS_BIAS = slice(15, 18)
+DVL_SCALE = 18
+DEPTH_BIAS = 19
+SIZE = 20
+
+
+class NavigationState(NamedTuple):
+    """Nominal state and error covariance; the kernels change these arrays in place."""
+
+    position: Array  # (3,) m, of the IMU, map_ned
+    velocity: Array  # (3,) m/s, of the IMU over ground, map_ned
+    quaternion: Array  # (4,) body to map_ned
+    gyro_bias: Array  # (3,) rad/s, body axes
+    accelerometer_bias: Array  # (3,) m/s^2, body axes
+    compass_bias: Array  # (3,) rad, of the gyrocompass: about its roll, pitch and heading axes
+    instrument_bias: Array  # (2,) scale error of the DVL, and bias of the depth in m
+    covariance: Array  # (20, 20) of the error state
+
+    def copied(self) -> "NavigationState":
+        """The same values in arrays of their own."""
+        return NavigationState(*(part.copy() for part in self))
+
+
+def empty_state() -> NavigationState:
+    """At rest in the origin, level, facing north, sensors without bias, perfectly known."""
+    return NavigationState(
+        np.zeros(3),
+        np.zeros(3),
+        np.array([0.0, 0.0, 0.0, 1.0]),
+        np.zeros(3),
+        np.zeros(3),
+        np.zeros(3),
+        np.zeros(2),
+        np.zeros((SIZE, SIZE)),
+    )

@@ -1,0 +1,155 @@
+"""The filter's kernels against their numpy twin and against finite differences."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from nav_states import NOISE, minus, numeric_jacobian, random_state
+from scipy.spatial.transform import Rotation
+
+from uvms_observer.navigation import measurements, reference, updates
+from uvms_observer.navigation.correction import correct
+from uvms_observer.navigation.propagation import propagate
+
+G = 9.81
+RATE, FORCE = np.array([0.1, -0.2, 0.3]), np.array([0.4, -0.3, -9.6])
+LEVER = np.array([-0.45, 0.1, 0.2])
+OPEN = float("inf")
+seeds = st.integers(0, 2**32 - 1)
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=seeds, dt=st.floats(1e-4, 0.1))
+def test_propagation_equals_its_twin(seed, dt):
+    state = random_state(seed)
+    expected = reference.propagated(state, RATE, FORCE, dt, G, NOISE)
+    propagate(state, RATE, FORCE, dt, G, NOISE)
+    for ours, theirs in zip(state, expected, strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-10, atol=1e-13)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_transition_matrix_is_the_derivative_of_the_propagation(seed):
+    state, dt, phi = random_state(seed), 0.01, 0.999
+    nominal = reference.propagated_mean(state, RATE, FORCE, dt, G, phi)
+
+    def error_after(e):
+        moved = reference.propagated_mean(reference.plus(state, e), RATE, FORCE, dt, G, phi)
+        return minus(moved, nominal)
+
+    F = reference.transition_matrix(state, RATE, FORCE, dt, phi)
+    numeric = numeric_jacobian(error_after)
+    gyro = slice(9, 12)  # its column is exact to first order in the turn of one interval
+    np.testing.assert_allclose(F[:, gyro], numeric[:, gyro], atol=1e-6)
+    F[:, gyro] = numeric[:, gyro]
+    np.testing.assert_allclose(F, numeric, atol=2e-9)
+
+
+def test_propagation_of_free_fall_and_of_rest():
+    state = random_state(1)
+    state.velocity[:] = 0.0
+    start = state.position.copy()
+    propagate(state, np.zeros(3), state.accelerometer_bias.copy(), 0.5, G, NOISE)
+    np.testing.assert_allclose(state.velocity, [0.0, 0.0, 0.5 * G], atol=1e-12)
+    np.testing.assert_allclose(state.position - start, [0.0, 0.0, 0.125 * G], atol=1e-12)
+
+
+def test_a_full_turn_brings_the_attitude_back():
+    state = random_state(2)
+    start = Rotation.from_quat(state.quaternion)
+    state.gyro_bias[:] = 0.0
+    for _ in range(100):
+        propagate(state, np.array([0.0, 0.0, 2.0 * np.pi]), FORCE, 0.01, G, NOISE)
+    assert (Rotation.from_quat(state.quaternion) * start.inv()).magnitude() < 1e-12
+
+
+EXPECTATIONS = {
+    "dvl": lambda state: measurements.velocity(state, LEVER, RATE),
+    "pressure": lambda state: measurements.depth(state, LEVER),
+    "gps": lambda state: measurements.position(state, LEVER),
+}
+
+
+@pytest.mark.parametrize("sensor", EXPECTATIONS)
+@pytest.mark.parametrize("seed", range(4))
+def test_derivative_of_a_reading(sensor, seed):
+    state, expect = random_state(seed), EXPECTATIONS[sensor]
+    _, H = expect(state)
+    numeric = numeric_jacobian(lambda e: expect(reference.plus(state, e))[0])
+    np.testing.assert_allclose(H, numeric, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_derivative_of_the_gyrocompass_residual(seed):
+    """The axes of the bias move with the attitude: a product of two small angles, left out."""
+    state = random_state(seed)
+    state.compass_bias[:] = 0.0
+    axes = measurements.compass_axes(state.quaternion)
+    _, H = measurements.attitude(state, state.quaternion)
+    numeric = numeric_jacobian(
+        lambda e: -measurements.attitude(reference.plus(state, e), state.quaternion)[0]
+    )
+    np.testing.assert_allclose(H, numeric, atol=1e-8)
+    np.testing.assert_allclose(H[:, 15:18], axes)
+
+
+@pytest.mark.parametrize("index", range(3))
+def test_compass_axes_turn_roll_pitch_and_heading(index):
+    rpy, h = np.array([0.3, -0.4, 2.0]), 1e-6
+
+    def rotation(angles):
+        return Rotation.from_euler("ZYX", angles[::-1])
+
+    step = h * np.eye(3)[index]
+    turned = (rotation(rpy + step) * rotation(rpy - step).inv()).as_rotvec() / (2.0 * h)
+    axes = measurements.compass_axes(rotation(rpy).as_quat())
+    np.testing.assert_allclose(axes[:, index], turned, atol=1e-9)
+
+
+def test_compass_axes_are_finite_for_an_upright_vehicle():
+    upright = Rotation.from_euler("Y", np.pi / 2).as_quat()
+    assert np.isfinite(measurements.compass_axes(upright)).all()
+
+
+@settings(max_examples=25, deadline=None)
+@given(seed=seeds)
+def test_correction_equals_its_twin(seed):
+    state, rng = random_state(seed), np.random.default_rng(seed)
+    H, residual = rng.standard_normal((3, 20)), 0.01 * rng.standard_normal(3)
+    expected = reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]))
+    correct(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), OPEN)
+    for ours, theirs in zip(state, expected, strict=True):
+        np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-11)
+
+
+def test_correction_returns_the_mahalanobis_distance_and_obeys_the_gate():
+    state = random_state(3)
+    before = state.copied()
+    H, residual, N = np.eye(3, 20), np.array([1.0, 2.0, -1.0]), 0.1 * np.eye(3)
+    expected = residual @ np.linalg.solve(H @ before.covariance @ H.T + N, residual)
+    assert correct(state, H, residual, N, 0.99 * expected) == pytest.approx(expected, rel=1e-9)
+    for ours, theirs in zip(state, before, strict=True):
+        np.testing.assert_array_equal(ours, theirs)
+    correct(state, H, residual, N, 1.01 * expected)
+    assert np.trace(state.covariance) < np.trace(before.covariance)
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
+    state, rng = random_state(seed), np.random.default_rng(seed)
+    for _ in range(300):
+        propagate(state, RATE, FORCE, 0.01, G, NOISE)
+        updates.correct_attitude(state, state.quaternion.copy(), np.full(3, 1e-10), OPEN)
+        updates.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, OPEN)
+        updates.correct_depth(state, 1.0, 1e-8, LEVER, OPEN)
+        np.testing.assert_array_equal(state.covariance, state.covariance.T)
+    assert np.linalg.eigvalsh(state.covariance).min() > -1e-15
+    assert np.linalg.norm(state.quaternion) == pytest.approx(1.0, abs=1e-14)
+
+
+def test_gyro_noise_reads_through_the_dvl_lever_arm():
+    quiet, noisy = random_state(5), random_state(5)
+    measured = measurements.velocity(quiet, LEVER, RATE)[0] + 0.01
+    near = updates.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, OPEN)
+    far = updates.correct_velocity(noisy, measured, 1e-4, LEVER, RATE, 1e-2, OPEN)
+    assert far < near
