@@ -52,6 +52,8 @@ class ArmController:
                 f"arm effort limits: {self.effort_limit} N m, expected positive numbers"
             )
         self._config = config
+        self._law: SSurface | None = None  # for the period below: it hardly ever changes
+        self._period = 0.0
         self.reset()
 
     def reset(self) -> None:
@@ -60,7 +62,12 @@ class ArmController:
 
     def law(self, dt: float) -> SSurface:
         """The S-surface whose slope near zero has the bandwidth asked for at the period dt (s)."""
-        k, d = self._gains(dt)
+        if self._law is None or dt != self._period:
+            self._law, self._period = self._law_for(dt), dt
+        return self._law
+
+    def _law_for(self, dt: float) -> SSurface:
+        k, d = sampled_gains(self._config.bandwidth, self._config.damping_ratio, dt)
         one, n = self._config.amplitude, self.effort_limit.size
         # With an error scale of A / (2 k) and k_error = 1 the slope A k_error / (2 scale) is k.
         return SSurface(
@@ -78,8 +85,8 @@ class ArmController:
         as negative damping and chatter about zero; at the reference rate alone a joint would stick
         wherever its error is worth less than its dry friction.
         """
-        k, d = self._gains(dt)
-        return q_dot + (k / d) * error
+        law = self.law(dt)
+        return q_dot + law.stiffness / law.damping * error
 
     def effort(
         self, error: Array, rate: Array, inertia: Array, feed_forward: Array, dt: float
@@ -89,9 +96,9 @@ class ArmController:
         `error` q_d - q, `rate` of it, `inertia` S(q) (n, n), `feed_forward` (n,) N m: the torque
         that the model needs for the reference acceleration. With the integral it is K Delta-u.
         """
-        feedback = inertia @ self.law(dt).acceleration(error, rate)
-        stiffness, _ = self._gains(dt)
-        growth = self._config.integral_rate * stiffness * np.diag(inertia) * error * dt
+        law = self.law(dt)
+        feedback = inertia @ law.acceleration(error, rate)
+        growth = self._config.integral_rate * law.stiffness * np.diag(inertia) * error * dt
         wanted = feedback + feed_forward + self.integral
         self._integrate(growth, wanted)
         return np.clip(wanted, -self.effort_limit, self.effort_limit)
@@ -101,6 +108,3 @@ class ArmController:
         windup = (np.abs(wanted) >= self.effort_limit) & (growth * wanted > 0.0)
         limit = self._config.integral_limit * self.effort_limit
         self.integral = np.clip(self.integral + np.where(windup, 0.0, growth), -limit, limit)
-
-    def _gains(self, dt: float) -> tuple[float, float]:
-        return sampled_gains(self._config.bandwidth, self._config.damping_ratio, dt)

@@ -142,7 +142,7 @@ def _hermite_attitude(reference: Reference, i: int, s: float, h: float) -> tuple
     start, end = reference.quaternion[i], reference.quaternion[i + 1]
     turn = quat_to_rotation_vector(quat_multiply(quat_conjugate(start), end))
     rate_start = reference.nu[i, 3:]
-    rate_end = np.linalg.solve(right_jacobian(turn), reference.nu[i + 1, 3:])
+    rate_end = np.asarray(np.linalg.solve(right_jacobian(turn), reference.nu[i + 1, 3:]), float)
     phi, phi_dot = _hermite(np.zeros(3), turn, rate_start, rate_end, s, h)
     quaternion = quat_multiply(start, rotation_vector_to_quat(phi))
     return quaternion / np.linalg.norm(quaternion), right_jacobian(phi) @ phi_dot
