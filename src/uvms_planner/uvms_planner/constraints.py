@@ -1,12 +1,12 @@
 """Attitude limits of eq. (17) and Deb's rule for candidates that break them."""
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics import restoring_wrench
+from uvms_dynamics.kernels.jit import inner
 
 
-@njit(cache=True)
+@inner
 def free_attitude(model, q):
     """Roll and pitch in rad that the vehicle takes up freely with the joints at `q` (n,).
 
@@ -23,14 +23,14 @@ def free_attitude(model, q):
     return np.arctan2(p_y, p_z), np.arctan2(-p_x, np.hypot(p_y, p_z))
 
 
-@njit(cache=True)
+@inner
 def attitude_violation(model, problem, q):
     """How far in rad the free attitude lies beyond the limits, roll and pitch added; 0 within."""
     roll, pitch = free_attitude(model, q)
     return max(abs(roll) - problem.roll_max, 0.0) + max(abs(pitch) - problem.pitch_max, 0.0)
 
 
-@njit(cache=True)
+@inner
 def better(violation, cost, other_violation, other_cost):
     """Deb's rule: less violation beats more, and of two without any the lower cost wins."""
     if violation != other_violation:

@@ -1,15 +1,15 @@
 """The fitness of a candidate, eq. (18): the smaller the self-disturbance, the fitter."""
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics import coupling_wrench, restoring_wrench
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import attitude_violation
 from uvms_planner.problem import VEHICLE, yaw_quaternion
 from uvms_planner.projection import project, within_tolerance
 
 
-@njit(cache=True)
+@inner
 def body_motion(problem, increment):
     """Nu (6,) and nu_dot (6,), body frame, that an increment means for the level vehicle.
 
@@ -32,7 +32,7 @@ def body_motion(problem, increment):
     return nu, nu_dot
 
 
-@njit(cache=True)
+@kernel
 def self_disturbance(model, problem, increment, lookahead):
     """F_dis (6,) of eq. (16) for a candidate: restoring plus coupling wrench, body frame.
 
@@ -52,7 +52,7 @@ def self_disturbance(model, problem, increment, lookahead):
     return wrench
 
 
-@njit(cache=True)
+@inner
 def cost(model, problem, increment):
     """Sum of F_dis squared, eq. (18), plus what the motion and its change of rate cost."""
     wrench = self_disturbance(model, problem, increment, problem.lookahead)
@@ -67,7 +67,7 @@ def cost(model, problem, increment):
     return total
 
 
-@njit(cache=True)
+@kernel
 def judge(model, problem, increment):
     """Project `increment` (m,) in place; return (valid, attitude violation in rad, cost).
 

@@ -8,8 +8,8 @@ is discarded, as in the paper), Deb's rule for the attitude limits, a polish of 
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge
 from uvms_planner.genome import decode, encode
@@ -30,7 +30,7 @@ class GeneticSettings(NamedTuple):
     refinements: int
 
 
-@njit(cache=True)
+@inner
 def selection_fitness(valid, violation, cost, fitness):
     """Fill `fitness` (p,): 1 / cost, eq. (18); 0 for the discarded.
 
@@ -50,7 +50,7 @@ def selection_fitness(valid, violation, cost, fitness):
             fitness[i] = lowest / (2.0 + np.rad2deg(violation[i]))
 
 
-@njit(cache=True)
+@inner
 def roulette(fitness, draw):
     """Index chosen with probability proportional to `fitness` (p,) by `draw` in [0, 1)."""
     total = 0.0
@@ -68,14 +68,14 @@ def roulette(fitness, draw):
     return last
 
 
-@njit(cache=True)
+@kernel
 def cross_over(first, second, point):
     """Swap the bits of two chromosomes from `point` on, in place."""
     for k in range(point, first.shape[0]):
         first[k], second[k] = second[k], first[k]
 
 
-@njit(cache=True)
+@kernel
 def mutate(chromosome, rate, rng):
     """Flip each bit with probability `rate`, in place."""
     for k in range(chromosome.shape[0]):
@@ -83,7 +83,7 @@ def mutate(chromosome, rate, rng):
             chromosome[k] ^= 1
 
 
-@njit(cache=True)
+@inner
 def fill_elite(valid, violation, cost, elite):
     """Fill `elite` (e,) with the indices of the best individuals by Deb's rule, best first."""
     taken = np.zeros(cost.shape[0], dtype=np.bool_)
@@ -99,7 +99,7 @@ def fill_elite(valid, violation, cost, elite):
             taken[best] = True
 
 
-@njit(cache=True)
+@kernel
 def breed(chromosomes, fitness, settings, rng, children, start):
     """Fill `children` (p, bits) from row `start` on: selection, crossover, mutation."""
     bits = chromosomes.shape[1]
@@ -112,7 +112,7 @@ def breed(chromosomes, fitness, settings, rng, children, start):
         mutate(children[i], settings.mutation_rate, rng)
 
 
-@njit(cache=True)
+@kernel
 def evolve(model, problem, settings, seeds, rng):
     """The best increment (m,) of one step, from `seeds` (s, m) and random individuals.
 
@@ -171,7 +171,7 @@ def evolve(model, problem, settings, seeds, rng):
     return True, increment, worst, least, discarded, feasible, evaluations + judged
 
 
-@njit(cache=True)
+@inner
 def _keep_elite(elite, chromosomes, increments, children, children_increments):
     kept = 0
     for place in range(elite.shape[0]):
@@ -182,7 +182,7 @@ def _keep_elite(elite, chromosomes, increments, children, children_increments):
     return kept
 
 
-@njit(cache=True)
+@inner
 def _move_judgement(elite, kept, valid, violation, cost):
     """Put the judgement of the elite where the elite now stands."""
     violations, costs = np.zeros(kept), np.zeros(kept)

@@ -6,10 +6,11 @@ middle of the range, is the place where all bits flip at once.
 """
 
 import numpy as np
-from numba import njit
+
+from uvms_dynamics.kernels.jit import kernel
 
 
-@njit(cache=True)
+@kernel
 def encode(increment, lower, upper, bits, chromosome):
     """Write `increment` (m,) into `chromosome` (m bits,) uint8, rounded to the nearest code."""
     top = (np.int64(1) << bits) - 1
@@ -22,7 +23,7 @@ def encode(increment, lower, upper, bits, chromosome):
             chromosome[i * bits + k] = (gray >> (bits - 1 - k)) & 1
 
 
-@njit(cache=True)
+@kernel
 def decode(chromosome, lower, upper, bits, increment):
     """Read `chromosome` (m bits,) into `increment` (m,), within `lower` and `upper`."""
     top = (np.int64(1) << bits) - 1

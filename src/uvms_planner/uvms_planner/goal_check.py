@@ -1,8 +1,8 @@
 """Clear rejections of paths that are malformed or cannot be followed."""
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array, PathGoal
 from uvms_planner.config import PlannerConfig
@@ -111,7 +111,7 @@ def check_reachable(
     _reject(path, float(times[index]), problem, solver, distance, angle, frozen)
 
 
-@njit(cache=True)
+@kernel
 def go_along(model, problem, positions, rotations, lower, upper, frozen):
     """Project step by step along `positions` (k, 3); `problem`'s arrays are left where it failed.
 

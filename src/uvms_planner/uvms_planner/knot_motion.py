@@ -1,14 +1,14 @@
 """Rate and acceleration at a knot, so that segments join smoothly and stay on the path."""
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.projection import configuration_jacobian, weighted_step
 
 DIFFERENCE_S = 1e-3
 
 
-@njit(cache=True)
+@kernel
 def knot_motion(model, problem, increment, tool_rate, tool_acceleration):
     """Rate (m,) and acceleration (m,) of c at the end of a step.
 
@@ -25,7 +25,7 @@ def knot_motion(model, problem, increment, tool_rate, tool_acceleration):
     return rate, acceleration
 
 
-@njit(cache=True)
+@kernel
 def meet(model, problem, end, tool_rate, tool_acceleration, rate, acceleration):
     """Change `rate` and `acceleration` (m,) of c at `end` (m,) in place the least way so that
     J c_dot = y_dot and J c_ddot + J_dot c_dot = y_ddot for the tool's `tool_rate` and
@@ -39,7 +39,7 @@ def meet(model, problem, end, tool_rate, tool_acceleration, rate, acceleration):
     _meet(problem, jacobian, wanted, acceleration)
 
 
-@njit(cache=True)
+@inner
 def _meet(problem, jacobian, wanted, vector):
     """Change `vector` (m,) in place the least way so that J vector = wanted."""
     equations = 6 if problem.oriented else 3

@@ -1,9 +1,9 @@
 """Small dense solver for kernels, without temporaries."""
 
-from numba import njit
+from uvms_dynamics.kernels.jit import kernel
 
 
-@njit(cache=True)
+@kernel
 def solve_in_place(a, b, size):
     """Solve a x = b for the leading `size` rows by Gaussian elimination with partial pivoting.
 

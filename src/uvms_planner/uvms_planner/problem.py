@@ -8,8 +8,8 @@ is the increment of c over one step.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.signals import Array
 
 VEHICLE = 4  # x, y, z, psi stand before the joints
@@ -40,7 +40,7 @@ class StepProblem(NamedTuple):
     pitch_max: float  # rad
 
 
-@njit(cache=True)
+@inner
 def yaw_quaternion(yaw):
     """Quaternion (4,), body to world, of a level vehicle with this yaw in rad."""
     quaternion = np.zeros(4)

@@ -5,18 +5,18 @@ damped, weighted Newton steps solve y(c) = y_d for the increment of c next to th
 """
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics import end_effector, end_effector_jacobian
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.linear import solve_in_place
 from uvms_planner.problem import VEHICLE, yaw_quaternion
 
-CONVERGED_M = 1e-10
-CONVERGED_RAD = 1e-10
+CONVERGED_M = 1e-8
+CONVERGED_RAD = 1e-8
 
 
-@njit(cache=True)
+@kernel
 def configuration_jacobian(model, configuration):
     """J (6, m): velocity and angular velocity of the tool, world axes, per rate of c.
 
@@ -35,7 +35,7 @@ def configuration_jacobian(model, configuration):
     return jacobian
 
 
-@njit(cache=True)
+@inner
 def tool_pose(model, configuration):
     """Position (3,) and rotation (3, 3) of the tool in the world for c (m,), eq. (1)."""
     return end_effector(
@@ -46,13 +46,13 @@ def tool_pose(model, configuration):
     )
 
 
-@njit(cache=True)
+@kernel
 def rotation_error(desired, actual):
     """Rotation vector (3,), world axes, that turns `actual` (3, 3) into `desired` (3, 3)."""
     return quat_to_rotation_vector(matrix_to_quat(desired @ actual.T))
 
 
-@njit(cache=True)
+@inner
 def tool_error(model, problem, increment, error):
     """Fill `error` (6,) with desired minus actual pose; return (m, rad) distances."""
     position, rotation = tool_pose(model, problem.configuration + increment)
@@ -65,13 +65,13 @@ def tool_error(model, problem, increment, error):
     return distance, np.sqrt(error[3] ** 2 + error[4] ** 2 + error[5] ** 2)
 
 
-@njit(cache=True)
+@inner
 def within_tolerance(problem, distance, angle):
     """Whether an end-effector error is below e, eq. (17)."""
     return distance < problem.position_tolerance and angle < problem.orientation_tolerance
 
 
-@njit(cache=True)
+@kernel
 def weighted_step(jacobian, error, readiness, free, damping, equations, step):
     """Fill `step` (m,) with W J^T (J W J^T + lambda^2 tr I)^-1 error over the free variables."""
     gram = np.zeros((6, 6))
@@ -95,7 +95,7 @@ def weighted_step(jacobian, error, readiness, free, damping, equations, step):
                 step[i] += readiness[i] * jacobian[a, i] * force[a]
 
 
-@njit(cache=True)
+@kernel
 def project(model, problem, increment):
     """Move `increment` (m,) within its bounds onto the path, in place; return (m, rad) errors."""
     size = increment.shape[0]
@@ -121,10 +121,27 @@ def project(model, problem, increment):
             moved = increment[i] + step[i]
             increment[i] = min(max(moved, problem.lower[i]), problem.upper[i])
         distance, angle = tool_error(model, problem, increment, error)
+        if not problem.oriented and _shift(problem, increment, error):
+            return 0.0, 0.0
     return distance, angle
 
 
-@njit(cache=True)
+@inner
+def _shift(problem, increment, error):
+    """Take what a Newton step left of a position error by moving the vehicle, where it may.
+
+    The tool's position is linear in x, y, z: the rest, of second order, is gone at once.
+    """
+    for i in range(3):
+        moved = increment[i] + error[i]
+        if problem.readiness[i] <= 0.0 or not problem.lower[i] <= moved <= problem.upper[i]:
+            return False
+    for i in range(3):
+        increment[i] += error[i]
+    return True
+
+
+@inner
 def _release_blocked(problem, increment, step, free):
     """Take variables out of `free` that sit at a bound and would be pushed beyond it."""
     changed = False

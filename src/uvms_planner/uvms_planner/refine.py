@@ -4,8 +4,8 @@ Without it the bits of the last improvement would shake the vehicle from step to
 """
 
 import numpy as np
-from numba import njit
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge, self_disturbance
 from uvms_planner.linear import solve_in_place
@@ -15,7 +15,7 @@ DIFFERENCE = 1e-4  # of a variable's reach
 HALVINGS = 4
 
 
-@njit(cache=True)
+@inner
 def normal_equations(model, problem, increment, hessian, gradient):
     """Fill A^T A (m, m) and A^T rho (m,) of the cost's residuals rho about `increment` (m,).
 
@@ -51,7 +51,7 @@ def normal_equations(model, problem, increment, hessian, gradient):
             hessian[i, i] += change + motion + 1e-9 / problem.reach[i] ** 2
 
 
-@njit(cache=True)
+@inner
 def constrained_step(problem, increment, hessian, gradient, jacobian, error, step):
     """Fill `step` (m,) with the minimizer of the quadratic model, J step = error, within bounds.
 
@@ -96,7 +96,7 @@ def constrained_step(problem, increment, hessian, gradient, jacobian, error, ste
     return True
 
 
-@njit(cache=True)
+@kernel
 def refine(model, problem, increment, violation, cost, rounds):
     """Improve `increment` (m,) in place, at most `rounds` steps; return (violation, cost, judged).
 

@@ -3,9 +3,9 @@
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 
 from uvms_dynamics import Model
+from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.signals import Array, Reference
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
@@ -109,7 +109,7 @@ def reference(model: Model, stamp: int, times: Array, samples: Samples) -> Refer
     )
 
 
-@njit(cache=True)
+@kernel
 def tool_positions(model, configurations):
     """Positions (k, 3) of the tool in the world for configurations (k, m)."""
     out = np.zeros((configurations.shape[0], 3))
