@@ -21,7 +21,7 @@ def joint_rotations(model, q, rotation):
         turn_about_z(model.tree_rotation, i, q[i] + model.joint_offset[i], rotation)
 
 
-@kernel
+@inner
 def joint_frames(model, q):
     """Origins (n, 3) and rotations (n, 3, 3) of the joint frames in the body frame."""
     n = q.shape[0]
@@ -51,7 +51,7 @@ def _place(origin, rotation, i, position, turned):
             rotation[i, row, column] = total
 
 
-@kernel
+@inner
 def tool_in_body(model, origin, rotation):
     """Tool position (3,) and rotation (3, 3) in the body frame, from the joint frames."""
     last = origin.shape[0] - 1
