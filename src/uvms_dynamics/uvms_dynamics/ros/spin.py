@@ -19,13 +19,14 @@ from rclpy.task import Future
 
 from uvms_dynamics.errors import UvmsError
 
+SIGNALS = (signal.SIGINT, signal.SIGTERM)
 IDLE = 0.2
 """Longest sleep between two looks at the nodes' deadlines, s."""
 
 
 def start(args: Sequence[str] | None = None) -> None:
     """Initialise rclpy with SIGINT and SIGTERM blocked, to be taken by `Spinner`."""
-    signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
     rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
 
 
@@ -43,13 +44,20 @@ class Spinner:
             self._executor.add_node(node)
         self.done: Future = Future()
         self._wakers = [node for node in nodes if hasattr(node, "on_wake")]
+        # Threads that were there before `start` (of a BLAS library, say) do not block the signals;
+        # one that comes to them runs this handler, between two sleeps of the main thread.
+        for number in SIGNALS:
+            signal.signal(number, lambda *_: self._finish())
         threading.Thread(target=self._take_signal, daemon=True).start()
 
     def stop(self) -> None:
         """End `spin` from any thread."""
+        self._finish()
+        self._executor.wake()
+
+    def _finish(self) -> None:
         if not self.done.done():
             self.done.set_result(None)
-        self._executor.wake()
 
     def spin(self, until: Callable[[], bool] = lambda: False) -> None:
         """Serve callbacks and deadlines until `stop`, a signal, or `until()` is true."""
@@ -81,7 +89,7 @@ class Spinner:
         rclpy.try_shutdown()
 
     def _take_signal(self) -> None:
-        signal.sigwait({signal.SIGINT, signal.SIGTERM})
+        signal.sigwait(SIGNALS)
         self.stop()
 
     def _sleep(self) -> float:

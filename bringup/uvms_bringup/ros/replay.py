@@ -1,0 +1,162 @@
+"""`uvms replay`: publishes a log again with /clock, or feeds one node with its recorded inputs."""
+
+import os
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from rclpy.node import Node
+from rclpy.publisher import Publisher
+from rclpy.task import Future
+
+from uvms_bringup.errors import LogError, RunError
+from uvms_bringup.log.read import RunLog
+from uvms_bringup.log.schema import qos_from_yaml
+from uvms_bringup.progress import ProgressLine
+from uvms_bringup.ros.recorder import stamp_of
+from uvms_dynamics import topics
+from uvms_dynamics.ros.convert import interface_class
+from uvms_dynamics.ros.node import qos_profile
+from uvms_dynamics.ros.spin import Spinner, start
+from uvms_dynamics.signals import to_seconds
+
+FEEDBACK = "_FeedbackMessage"
+DISCOVERY_S = 1.0
+"""Wall time that others get to find the publishers before the first message."""
+LEAST_SLEEP_S = 1e-3
+MESSAGES_A_SPIN = 200
+
+
+def replay(
+    log: str | Path,
+    into: str | None = None,
+    rate: float | None = None,
+    output: str | Path | None = None,
+) -> int:
+    """Play a log again; returns the exit code.
+
+    Args:
+        log: MCAP file of a run.
+        into: node to feed with its recorded inputs; None: publish everything.
+        rate: speed against real time; 0: as fast as possible. None: 1, or 0 when feeding a node.
+        output: folder for what the fed node answers; None: beside the log.
+
+    Raises:
+        RunError: the rate is negative, or there is no such node, or it does not answer.
+        LogError: the log cannot be read or lacks what is needed.
+    """
+    if rate is not None and rate < 0.0:
+        raise RunError(f"--rate {rate:g}: a factor is 0 (as fast as possible) or more")
+    if into is not None and into not in topics.NODES:
+        raise RunError(f"--into {into!r}: choose one of {', '.join(topics.NODES)}")
+    run = RunLog.open(log)
+    if run.fault:
+        print(f"{run.path}: {run.fault}; going on with what is whole", flush=True)
+    if into is not None:
+        from uvms_bringup.ros.feed import feed
+
+        folder = Path(output) if output is not None else run.path.parent / f"replay-{into}"
+        return feed(run, into, rate or 0.0, folder)
+    return publish(run, 1.0 if rate is None else rate)
+
+
+def message_type(type_name: str) -> type | None:
+    """The class of a message type, feedback of actions included; None if it is not installed."""
+    try:
+        if type_name.endswith(FEEDBACK):
+            return interface_class(type_name.removesuffix(FEEDBACK)).Impl.FeedbackMessage
+        return interface_class(type_name)
+    except (ImportError, AttributeError):
+        return None
+
+
+class Player(Node):
+    """Publishes recorded bytes on their topics."""
+
+    def __init__(self, run: RunLog) -> None:
+        super().__init__("replay")
+        self.missing: list[str] = []
+        self._publishers_of: dict[str, Publisher] = {}
+        for name, type_name in run.topics.items():
+            cls = message_type(type_name)
+            if cls is None:
+                self.missing.append(f"{name} ({type_name} is not installed)")
+                continue
+            qos = qos_from_yaml(run.channel(name)[2].get("offered_qos_profiles", ""))
+            self._publishers_of[name] = self.create_publisher(cls, name, qos_profile(qos))
+
+    def play(self, name: str, data: bytes) -> None:
+        """Publish one message as it was recorded."""
+        publisher = self._publishers_of.get(name)
+        if publisher is not None:
+            publisher.publish(data)
+
+
+class Metronome:
+    """Keeps simulation time to wall time times a rate; rate 0 does not wait."""
+
+    def __init__(self, rate: float, clock: Callable[[], float] = time.monotonic) -> None:
+        self._rate, self._clock = rate, clock
+        self._origin: tuple[float, int] | None = None
+
+    def ahead(self, stamp: int) -> float:
+        """Wall seconds until a stamp is due; none for the first one."""
+        if self._origin is None:
+            self._origin = self._clock(), stamp
+        if self._rate == 0.0:
+            return 0.0
+        began, first = self._origin
+        return began + to_seconds(stamp - first) / self._rate - self._clock()
+
+
+def publish(run: RunLog, rate: float) -> int:
+    """Publish every topic of a log in its order, paced by its clock."""
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    start(["uvms"])
+    player = Player(run)
+    spinner = Spinner([player])
+    for lack in player.missing:
+        print(f"left out: {lack}", flush=True)
+    line = ProgressLine(_end_of(run))
+    try:
+        spinner.spin_for(Future(), DISCOVERY_S)
+        return _publish_all(run, player, spinner, Metronome(rate), line)
+    finally:
+        line.end()
+        spinner.shutdown()
+
+
+def _publish_all(
+    run: RunLog, player: Player, spinner: Spinner, metronome: Metronome, line: ProgressLine
+) -> int:
+    clock = run.full_name(topics.CLOCK)
+    clocked = clock in run.topics
+    now = 0
+    for count, (name, stamp, data) in enumerate(run.raw()):
+        # A reference is stamped ahead of the tick that it comes in, so the clock alone sets the
+        # pace where there is one.
+        if name == clock or not clocked:
+            now = max(now, stamp_of(data) if clocked else stamp)
+            line.show(now, "")
+        ahead = metronome.ahead(now)
+        if ahead > LEAST_SLEEP_S or count % MESSAGES_A_SPIN == 0:
+            spinner.spin_for(Future(), max(ahead, 0.0))
+        if spinner.done.done():
+            return 130
+        player.play(name, data)
+    # Reliable publishers deliver what is under way before they go.
+    spinner.spin_for(Future(), DISCOVERY_S)
+    return 0
+
+
+def _end_of(run: RunLog) -> int:
+    end = 0
+    names: list[Any] | None = [run.full_name(topics.CLOCK)]
+    if names[0] not in run.topics:
+        names = None
+    for _, stamp, _ in run.raw(names):
+        end = max(end, stamp)
+    if not end:
+        raise LogError(f"log {run.path}: has no messages to play")
+    return end

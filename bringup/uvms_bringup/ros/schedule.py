@@ -1,0 +1,76 @@
+"""What a node gets and gives in a recorded run, tick by tick."""
+
+from collections import Counter
+from dataclasses import dataclass, field
+
+from uvms_bringup.errors import LogError
+from uvms_bringup.log.read import RunLog
+from uvms_bringup.ros.recorder import stamp_of
+from uvms_dynamics import topics
+
+Input = tuple[str, bytes]
+
+
+@dataclass
+class TickRecord:
+    """One tick of a node: recorded inputs (full topic name, bytes), and how many outputs came."""
+
+    stamp: int
+    inputs: list[Input] = field(default_factory=list)
+    outputs: Counter[str] = field(default_factory=Counter)
+
+
+class TickOf:
+    """The tick in which a node gives an output, from the output's stamp."""
+
+    def __init__(self, run: RunLog, period: int, planner_step: int) -> None:
+        self._period, self._step = period, planner_step
+        self._reference = run.full_name(topics.REFERENCE)
+
+    def __call__(self, name: str, stamp: int) -> int:
+        """A reference comes one planner step ahead; a sensor's samples since the last tick come
+        with the tick at or after them.
+        """
+        if name == self._reference:
+            return max(stamp - self._step, 0)
+        return -(-stamp // self._period) * self._period
+
+
+def schedule(run: RunLog, node: str, tick_of: TickOf) -> list[TickRecord]:
+    """The ticks of a node, in order: those in which it gave something in the recorded run.
+
+    Inputs belong to the first tick at or after their stamp.
+
+    Raises:
+        LogError: the log lacks one of the node's inputs, or all of its outputs.
+    """
+    wanted = topics.NODES[node]
+    inputs = [run.full_name(topic) for topic in wanted.inputs]
+    outputs = [run.full_name(topic) for topic in wanted.outputs]
+    lacking = [name for name in inputs if name not in run.topics]
+    if lacking:
+        raise LogError(f"log {run.path}: lacks inputs of {node}: {', '.join(lacking)}")
+    ticks = _ticks(run, [name for name in outputs if name in run.topics], tick_of)
+    if not ticks:
+        raise LogError(f"log {run.path}: has no output of {node} ({', '.join(outputs)})")
+    recorded = sorted(
+        ((stamp_of(data), name, data) for name, _, data in run.raw(inputs)), key=lambda one: one[0]
+    )
+    order = iter(ticks)
+    tick = next(order)
+    for stamp, name, data in recorded:
+        while stamp > tick.stamp:
+            following = next(order, None)
+            if following is None:
+                return ticks
+            tick = following
+        tick.inputs.append((name, data))
+    return ticks
+
+
+def _ticks(run: RunLog, outputs: list[str], tick_of: TickOf) -> list[TickRecord]:
+    ticks: dict[int, TickRecord] = {}
+    for name, _, data in run.raw(outputs) if outputs else ():
+        stamp = tick_of(name, stamp_of(data))
+        ticks.setdefault(stamp, TickRecord(stamp)).outputs[name] += 1
+    return [ticks[stamp] for stamp in sorted(ticks)]
