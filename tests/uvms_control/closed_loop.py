@@ -3,9 +3,10 @@
 It is not the plant: it has no sensor noise, and thrusters only with a lag where a test asks for it.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
 from uvms_control import ThrustAllocator
 from uvms_dynamics import (
@@ -23,7 +24,7 @@ SUBSTEPS = 10
 
 @dataclass(frozen=True)
 class State:
-    """Pose, velocity and joints; also used for their time derivatives."""
+    """Pose, velocity and joints."""
 
     position: np.ndarray
     quaternion: np.ndarray
@@ -31,16 +32,19 @@ class State:
     q: np.ndarray
     q_dot: np.ndarray
 
-    def plus(self, rate, h):
-        return State(
-            *(a + h * b for a, b in zip(vars(self).values(), vars(rate).values(), strict=True))
-        )
-
     def estimates(self, stamp):
         """Odometry and joint states as exact sensors would give them."""
         none = np.zeros((6, 6))
         odometry = Odometry(stamp, self.position, self.quaternion, self.nu, none, none)
         return odometry, JointStates(stamp, self.q, self.q_dot, np.zeros_like(self.q))
+
+    def packed(self):
+        return np.concatenate((self.position, self.quaternion, self.nu, self.q, self.q_dot))
+
+    @classmethod
+    def unpacked(cls, x):
+        n = (x.size - 13) // 2
+        return cls(x[:3], quat_normalize(x[3:7]), x[7:13], x[13 : 13 + n], x[13 + n :])
 
 
 def at_rest(q, position=(0.0, 0.0, 0.0), quaternion=(0.0, 0.0, 0.0, 1.0)):
@@ -50,30 +54,33 @@ def at_rest(q, position=(0.0, 0.0, 0.0), quaternion=(0.0, 0.0, 0.0, 1.0)):
     )
 
 
-def rates(model, state, tau):
-    passive = joint_passive_torque(model, state.q, state.q_dot)
-    acceleration = forward_dynamics(
-        model, state.quaternion, state.nu, state.q, state.q_dot,
-        tau + np.concatenate((np.zeros(6), passive)),
-    )  # fmt: skip
-    spin = np.append(0.5 * state.nu[3:], 0.0)
-    return State(
-        quat_to_matrix(state.quaternion) @ state.nu[:3],
-        quat_multiply(state.quaternion, spin),
-        acceleration[:6],
-        state.q_dot,
-        acceleration[6:],
-    )
+@njit(cache=True)
+def rates(model, x, tau):
+    """Time derivative of the packed state under body wrench and joint torques `tau` (6+n,)."""
+    n = (x.size - 13) // 2
+    quaternion, nu, q, q_dot = x[3:7], x[7:13], x[13 : 13 + n], x[13 + n :]
+    load = tau.copy()
+    load[6:] += joint_passive_torque(model, q, q_dot)
+    acceleration = forward_dynamics(model, quaternion, nu, q, q_dot, load)
+    spin = np.zeros(4)
+    spin[:3] = 0.5 * nu[3:]
+    out = np.empty_like(x)
+    out[:3] = quat_to_matrix(quaternion) @ nu[:3].copy()
+    out[3:7] = quat_multiply(quaternion, spin)
+    out[7:13] = acceleration[:6]
+    out[13 : 13 + n] = q_dot
+    out[13 + n :] = acceleration[6:]
+    return out
 
 
-def rk4(model, state, tau, h):
-    k1 = rates(model, state, tau)
-    k2 = rates(model, state.plus(k1, h / 2), tau)
-    k3 = rates(model, state.plus(k2, h / 2), tau)
-    k4 = rates(model, state.plus(k3, h), tau)
-    for slope, share in ((k1, 1), (k2, 2), (k3, 2), (k4, 1)):
-        state = state.plus(slope, share * h / 6)
-    return replace(state, quaternion=quat_normalize(state.quaternion))
+@njit(cache=True)
+def rk4(model, x, tau, h):
+    """One Runge-Kutta step of h (s)."""
+    k1 = rates(model, x, tau)
+    k2 = rates(model, x + 0.5 * h * k1, tau)
+    k3 = rates(model, x + 0.5 * h * k2, tau)
+    k4 = rates(model, x + h * k3, tau)
+    return x + h / 6.0 * (k1 + 2.0 * k2 + 2.0 * k3 + k4)
 
 
 def observed(model, state, q_ddot):
@@ -134,8 +141,10 @@ def run(model, controller, state, reference, duration, *, allocator: ThrustAlloc
         wrench, joint_command = controller.step(odometry, joints, disturbance, reference)
         yield k * PERIOD, state, wrench.wrench, joint_command.effort
         wanted = wrench.wrench if allocator is None else allocator.step(wrench)[1].achieved
+        x = state.packed()
         for _ in range(SUBSTEPS):
             h = PERIOD / SUBSTEPS
             share = 1.0 if lag <= 0.0 else -np.expm1(-h / lag)
             actual = actual + share * (wanted - actual)
-            state = rk4(model, state, np.concatenate((actual + push, joint_command.effort)), h)
+            x = rk4(model, x, np.concatenate((actual + push, joint_command.effort)), h)
+        state = State.unpacked(x)

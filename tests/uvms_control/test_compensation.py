@@ -87,6 +87,15 @@ def test_angle_rate_and_joint_limits_hold(shift, share):
         last = correction.angle
 
 
+def test_a_reference_that_runs_into_a_limit_takes_the_correction_back():
+    compensation = EndEffectorCompensation(MODEL, CompensationConfig(), LOWER, UPPER)
+    odometry, _ = at_rest(WORKING, (0.2, -0.2, -0.2)).estimates(0)
+    for k in range(200):
+        q = WORKING + min(k / 100, 1.0) * (UPPER - WORKING)
+        correction = compensation.step(odometry, wanted(q), PERIOD)
+        assert np.all(q + correction.angle <= UPPER + 1e-12)
+
+
 def test_no_step_is_taken_without_elapsed_time():
     compensation = EndEffectorCompensation(MODEL, CompensationConfig(), LOWER, UPPER)
     odometry, _ = at_rest(WORKING, (0.1, 0.0, 0.0)).estimates(0)

@@ -49,8 +49,11 @@ class EndEffectorCompensation:
         gain = -np.expm1(-self._config.bandwidth * dt)
         largest = self._config.max_rate * dt
         change = np.clip(gain * (wanted - self._angle), -largest, largest)
-        self._angle = self._angle + change
-        return JointCorrection(self._angle, change / dt)
+        # The joint limits come before the rate bound where the reference runs into a limit.
+        moved = self._bounded(self._angle + change, desired.q)
+        rate = (moved - self._angle) / dt
+        self._angle = moved
+        return JointCorrection(moved, rate)
 
     def _wanted(self, odometry: Odometry, desired: ReferenceSample) -> Array:
         """Smallest correction (n,) rad that brings the tool to the path from this vehicle pose."""
