@@ -12,10 +12,29 @@ from uvms_dynamics.kernels import (
     restoring_wrench,
 )
 from uvms_dynamics.model import Model, build_model
+from uvms_dynamics.plant import Plant, PlantConfig, PlantTruth, SensorFrame
+from uvms_dynamics.rng import generator
+from uvms_dynamics.rotations import (
+    matrix_to_quat,
+    quat_conjugate,
+    quat_multiply,
+    quat_normalize,
+    quat_to_matrix,
+    quat_to_rotation_vector,
+    quat_to_rpy,
+    rotation_vector_to_quat,
+    rpy_to_quat,
+    skew,
+)
+from uvms_dynamics.thrusters import thruster_matrix
 from uvms_dynamics.vehicle import Vehicle, dump_vehicle, load_vehicle
 
 __all__ = [
     "Model",
+    "Plant",
+    "PlantConfig",
+    "PlantTruth",
+    "SensorFrame",
     "Vehicle",
     "build_model",
     "coupling_wrench",
@@ -23,10 +42,22 @@ __all__ = [
     "end_effector",
     "end_effector_jacobian",
     "forward_dynamics",
+    "generator",
     "hull_bias_wrench",
     "inverse_dynamics",
     "joint_passive_torque",
     "load_vehicle",
     "mass_matrix",
+    "matrix_to_quat",
+    "quat_conjugate",
+    "quat_multiply",
+    "quat_normalize",
+    "quat_to_matrix",
+    "quat_to_rotation_vector",
+    "quat_to_rpy",
     "restoring_wrench",
+    "rotation_vector_to_quat",
+    "rpy_to_quat",
+    "skew",
+    "thruster_matrix",
 ]

@@ -15,3 +15,7 @@ class ConfigError(UvmsError):
 
 class SignalError(UvmsError):
     """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
+
+
+class PlantDiverged(UvmsError):  # noqa: N818 (an event of the simulation rather than a fault)
+    """The plant's state is not finite any more; names the stamp and the state."""

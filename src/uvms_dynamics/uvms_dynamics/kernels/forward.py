@@ -35,7 +35,7 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     return out
 
 
-@kernel
+@inner
 def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
     n = q.shape[0]
