@@ -106,8 +106,8 @@ class Rig:
         imu, (gyro, force, compass) = self.vehicle.sensors.imu, self.biases[:9].reshape(3, 3)
         n, lever = len(t), imu.position_m
         tilt, heading = np.radians([imu.roll_pitch_noise_deg, imu.heading_noise_deg])
-        angles = self.motion.rpy(t) + compass + self.white(np.array([tilt, tilt, heading]), n, 3)
-        quaternions = Rotation.from_euler("ZYX", angles[:, ::-1]).as_quat()
+        turns = compass + self.white(np.array([tilt, tilt, heading]), n, 3)
+        quaternions = (self.motion.rotation(t) * Rotation.from_rotvec(turns)).as_quat()
         rates = self.motion.omega(t) + gyro + self.white(np.radians(imu.gyro_noise_deg_s), n, 3)
         forces = self.motion.force(t, lever, self.vehicle.environment.gravity_m_s2)
         forces = forces + force + self.white(imu.accelerometer_noise_m_s2, n, 3)

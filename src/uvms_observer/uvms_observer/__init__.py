@@ -1,0 +1,14 @@
+"""Navigation filter and disturbance observer of the vehicle-manipulator system."""
+
+from uvms_observer.disturbance import DisturbanceObserver, ObserverConfig
+from uvms_observer.errors import NotAlignedError, ObserverError
+from uvms_observer.navigation import NavigationConfig, NavigationFilter
+
+__all__ = [
+    "DisturbanceObserver",
+    "NavigationConfig",
+    "NavigationFilter",
+    "NotAlignedError",
+    "ObserverConfig",
+    "ObserverError",
+]

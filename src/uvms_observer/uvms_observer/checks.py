@@ -37,6 +37,12 @@ def quaternion(name: str, value: Any) -> None:
         raise SignalError(f"{name} has length {length:g}; it must be 1")
 
 
+def later(name: str, stamp: int, than: int, of: str) -> None:
+    """SignalError unless the stamp comes after another."""
+    if stamp <= than:
+        raise SignalError(f"{name} is {stamp} ns; it must be after {of}, {than} ns")
+
+
 def _name_culprit(name: str, value: Array) -> None:
     for where in np.argwhere(~np.isfinite(value)):
         index = ", ".join(str(int(i)) for i in where)

@@ -6,7 +6,6 @@ from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import ImuSample
 from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.installation import Installation
-from uvms_observer.navigation.measurements import compass_axes
 from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,
@@ -20,20 +19,20 @@ def aligned(sample: ImuSample, sensors: Installation, config: NavigationConfig) 
     """At rest at the configured position, with the measured attitude.
 
     The attitude is off by the gyrocompass's noise and by its bias, so that it starts correlated
-    with the bias: dtheta = -C (b_c + n).
+    with the bias: dtheta = -R (b_c + n).
     """
     state = empty_state()
     quaternion = sample.quaternion / np.linalg.norm(sample.quaternion)
     state.quaternion[:] = quaternion
-    state.position[:] = config.initial_position_m - quat_to_matrix(quaternion) @ sensors.body
-    P, C = state.covariance, compass_axes(quaternion)
+    P, R = state.covariance, quat_to_matrix(quaternion)
+    state.position[:] = config.initial_position_m - R @ sensors.body
     horizontal, vertical = config.initial_position_std_m, config.initial_depth_std_m
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2
     P[range(9, 18), range(9, 18)] = sensors.process.bias_variance
     P[[18, 19], [18, 19]] = sensors.instrument_variance
     bias = np.diag(sensors.process.bias_variance[6:])
-    P[ATTITUDE, ATTITUDE] = C @ (bias + np.diag(sensors.attitude_variance)) @ C.T
-    P[ATTITUDE, COMPASS_BIAS] = -C @ bias
-    P[COMPASS_BIAS, ATTITUDE] = -bias @ C.T
+    P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(sensors.attitude_variance)) @ R.T
+    P[ATTITUDE, COMPASS_BIAS] = -R @ bias
+    P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T
     return state

@@ -19,7 +19,7 @@ class Installation(NamedTuple):
     gps: Array
     gravity: float  # m/s^2
     process: ProcessNoise
-    attitude_variance: Array  # (3,) rad^2, white noise of roll, pitch and heading
+    attitude_variance: Array  # (3,) rad^2, gyrocompass's white noise about the body axes
     rate_variance: float  # rad^2/s^2, white noise of one gyro sample
     velocity_variance: float  # m^2/s^2
     depth_variance: float  # m^2

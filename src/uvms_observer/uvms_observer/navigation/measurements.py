@@ -2,13 +2,13 @@
 
 Sensors are mounted at the lever arm d from the IMU (body axes), which turns with w = w_m - b_g:
 
-    gyrocompass  R_m = Exp(C (b_c + n)) R
+    gyrocompass  R_m = R Exp(b_c + n)
     DVL          (1 + s) (R^T v + w x d) + n
     pressure     (p + R d)_z + b_p + n          (as depth)
     GPS          p + R d + n
 
-C has the gyrocompass's roll, pitch and heading axes in its columns. Each function returns the
-expected value and its derivative H (m, 20); tests check H against finite differences.
+Each function returns the expected value and its derivative H (m, 20); tests check H against finite
+differences.
 """
 
 import numpy as np
@@ -25,36 +25,17 @@ from uvms_dynamics.rotations import (
 from uvms_dynamics.signals import Array
 from uvms_observer.navigation.state import SIZE, NavigationState
 
-UPRIGHT = 1e-6
-"""Cosine of the pitch below which the heading has no meaning and any level axis will do."""
-
-
-@njit(cache=True)
-def compass_axes(quaternion: Array) -> Array:
-    """Axes in map_ned about which roll, pitch and heading (ZYX) turn, as columns (3, 3)."""
-    R = quat_to_matrix(quaternion)
-    level = np.sqrt(R[0, 0] ** 2 + R[1, 0] ** 2)
-    axes = np.zeros((3, 3))
-    axes[:, 0] = R[:, 0]
-    if level > UPRIGHT:
-        axes[0, 1] = -R[1, 0] / level
-        axes[1, 1] = R[0, 0] / level
-    else:
-        axes[:, 1] = R[:, 1]
-    axes[2, 2] = 1.0
-    return axes
-
 
 @njit(cache=True)
 def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
     """Rotation vector (3,) rad, map_ned, from the expected to the measured attitude, and H."""
-    axes = compass_axes(state.quaternion)
-    turn = rotation_vector_to_quat(axes @ state.compass_bias)
+    R = quat_to_matrix(state.quaternion)
+    turn = rotation_vector_to_quat(R @ state.compass_bias)
     expected = quat_multiply(turn, state.quaternion)
     H = np.zeros((3, SIZE))
     for i in range(3):
         H[i, 6 + i] = 1.0
-    H[:, 15:18] = axes
+    H[:, 15:18] = R
     return quat_to_rotation_vector(quat_multiply(measured, quat_conjugate(expected))), H
 
 

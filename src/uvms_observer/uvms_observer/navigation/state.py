@@ -37,7 +37,7 @@ class NavigationState(NamedTuple):
     quaternion: Array  # (4,) body to map_ned
     gyro_bias: Array  # (3,) rad/s, body axes
     accelerometer_bias: Array  # (3,) m/s^2, body axes
-    compass_bias: Array  # (3,) rad, of the gyrocompass: about its roll, pitch and heading axes
+    compass_bias: Array  # (3,) rad, of the gyrocompass, a turn about the body axes
     instrument_bias: Array  # (2,) scale error of the DVL, and bias of the depth in m
     covariance: Array  # (20, 20) of the error state
 

@@ -7,7 +7,7 @@ residual's squared Mahalanobis distance.
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.rotations import skew
+from uvms_dynamics.rotations import quat_to_matrix, skew
 from uvms_dynamics.signals import Array
 from uvms_observer.navigation import measurements
 from uvms_observer.navigation.correction import correct
@@ -15,17 +15,16 @@ from uvms_observer.navigation.state import NavigationState
 
 attitude, velocity = measurements.attitude, measurements.velocity
 depth, position = measurements.depth, measurements.position
-compass_axes = measurements.compass_axes
 
 
 @njit(cache=True)
 def correct_attitude(
     state: NavigationState, measured: Array, variance: Array, gate: float
 ) -> float:
-    """Gyrocompass: quaternion (4,), variances (3,) rad^2 of roll, pitch and heading."""
+    """Gyrocompass: quaternion (4,), variances (3,) rad^2 about the body axes."""
     residual, H = attitude(state, measured)
-    axes = compass_axes(state.quaternion)
-    return correct(state, H, residual, (axes * variance) @ np.ascontiguousarray(axes.T), gate)
+    R = quat_to_matrix(state.quaternion)
+    return correct(state, H, residual, (R * variance) @ np.ascontiguousarray(R.T), gate)
 
 
 @njit(cache=True)

@@ -1,0 +1,38 @@
+"""Parameters of the disturbance observer."""
+
+from pydantic import Field
+
+from uvms_dynamics.config import Config
+
+
+class ObserverConfig(Config):
+    """What is fed forward, and how quickly accelerations and the external wrench are followed."""
+
+    external: bool = Field(
+        True,
+        description="feed the external wrench forward as well (current, payload, tether, model "
+        "error); it is estimated and published in any case",
+    )
+    external_bandwidth_rad_s: float = Field(
+        0.5,
+        gt=0.0,
+        le=10.0,
+        description="bandwidth of the external wrench's estimate (the gain K of the momentum "
+        "residual), rad/s; keep it below a third of the controller's",
+    )
+    joint_jerk_rad_s3: float = Field(
+        0.3,
+        gt=0.0,
+        description="how much a joint's acceleration changes within one second, rad/s^3; larger "
+        "follows faster and lets more encoder noise through",
+    )
+    vehicle_jerk_m_s3: float = Field(
+        0.05,
+        gt=0.0,
+        description="how much the vehicle's acceleration changes within one second, m/s^3",
+    )
+    vehicle_jerk_rad_s3: float = Field(
+        0.1,
+        gt=0.0,
+        description="how much its angular acceleration changes within one second, rad/s^3",
+    )

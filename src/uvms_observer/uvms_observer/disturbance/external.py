@@ -1,0 +1,69 @@
+"""The external wrench: what moves the vehicle and neither the model nor the thrusters explain.
+
+A residual of the generalized momentum p = M(q) zeta (De Luca and Mattone 2003), of which the
+vehicle's six rows are kept:
+
+    r = K [p(t) - p(0) - integral (tau + what the model says + r) dt],  so that  r' = K (F_ext - r):
+
+a first-order estimate of F_ext with bandwidth K, stable for every K > 0, which never differentiates
+a signal. In steps of dt, with all states at the middle of the interval, the same sum reads
+
+    r += (1 - exp(-K dt)) (h(zeta, dzeta/dt) - tau - r),
+
+where h is inverse dynamics with the difference quotient as acceleration: M dzeta adds up to p
+again, since M at the middle of the step gives dp - dM zeta to second order. Currents, payloads,
+tethers and wrong parameters all end up in r.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics.signals import Array
+
+
+class Moment(NamedTuple):
+    """Pose and motion of the system at one instant."""
+
+    quaternion: Array  # (4,)
+    nu: Array  # (6,)
+    q: Array  # (n,)
+    q_dot: Array  # (n,)
+
+
+class ExternalWrenchObserver:
+    """Estimate of the external wrench on the vehicle, body frame.
+
+    Args:
+        model: kernel tables of the vehicle.
+        bandwidth: K, rad/s.
+    """
+
+    def __init__(self, model: Model, bandwidth: float) -> None:
+        self._model = model
+        self._bandwidth = bandwidth
+        self.wrench = np.zeros(6)
+
+    def step(self, dt: float, before: Moment, now: Moment, thrust: Array) -> Array:
+        """Estimate (6,) after an interval of dt s with this mean thruster wrench (6,)."""
+        missing = unexplained_wrench(self._model, dt, before, now, thrust)
+        self.wrench = self.wrench - np.expm1(-self._bandwidth * dt) * (missing - self.wrench)
+        return self.wrench
+
+
+def unexplained_wrench(
+    model: Model, dt: float, before: Moment, now: Moment, thrust: Array
+) -> Array:
+    """Mean wrench (6,) over the interval that the motion asks for beyond the thrusters' wrench."""
+    middle = Moment(*(0.5 * (a + b) for a, b in zip(_same_sign(before, now), now, strict=True)))
+    quaternion = middle.quaternion / np.linalg.norm(middle.quaternion)
+    nu_dot, q_ddot = (now.nu - before.nu) / dt, (now.q_dot - before.q_dot) / dt
+    asked = inverse_dynamics(model, quaternion, middle.nu, nu_dot, middle.q, middle.q_dot, q_ddot)
+    return asked[:6] - thrust
+
+
+def _same_sign(moment: Moment, other: Moment) -> Moment:
+    """The quaternion's sign that is nearer to the other's."""
+    nearer = float(moment.quaternion @ other.quaternion) >= 0.0
+    return moment if nearer else moment._replace(quaternion=-moment.quaternion)

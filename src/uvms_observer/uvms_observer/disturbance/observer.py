@@ -1,0 +1,119 @@
+"""The self-disturbance observer, eq. (21): what acts on the vehicle besides its thrusters."""
+
+import numpy as np
+
+from uvms_dynamics import Vehicle, build_model, coupling_wrench, restoring_wrench
+from uvms_dynamics.errors import SignalError
+from uvms_dynamics.signals import (
+    Array,
+    DisturbanceBudget,
+    JointStates,
+    Odometry,
+    Wrench,
+    to_seconds,
+)
+from uvms_observer import checks
+from uvms_observer.disturbance.config import ObserverConfig
+from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment
+from uvms_observer.disturbance.thrust_lag import ThrustLag
+from uvms_observer.disturbance.tracking import TrackingFilter
+
+NOT_MOVING = np.zeros(6)
+
+
+class DisturbanceObserver:
+    """Restoring and coupling wrench of the estimated state through the model, and what is left.
+
+    Eq. (21): F_dis = restoring(R, q) + coupling(nu, nu_dot, q, q_dot, q_ddot), a wrench that acts
+    ON the vehicle, body frame, about its origin. Accelerations come from tracking filters, the
+    external wrench from a momentum residual. The water is taken to be at rest: what a current does
+    is part of the external wrench.
+
+    Args:
+        vehicle: model, thruster lag, encoder noise.
+        config: switch and bandwidths.
+    """
+
+    def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
+        self._model = build_model(vehicle)
+        self._config = config
+        self._n = vehicle.n_joints
+        self._encoder_variances = _encoder_variances(vehicle)
+        self._joints = TrackingFilter(3, config.joint_jerk_rad_s3)
+        self._linear = TrackingFilter(2, config.vehicle_jerk_m_s3)
+        self._angular = TrackingFilter(2, config.vehicle_jerk_rad_s3)
+        self._lag = ThrustLag(vehicle)
+        self._external = ExternalWrenchObserver(self._model, config.external_bandwidth_rad_s)
+        self._stamp: int | None = None
+        self._before: Moment | None = None
+
+    def step(
+        self, odometry: Odometry, joints: JointStates, achieved: Wrench | None
+    ) -> tuple[DisturbanceBudget, Wrench]:
+        """The budget at this stamp, and the total that the controller shall take off its wrench.
+
+        The budget's coupling has the vehicle's own acceleration in it, as eq. (16) and the plant
+        have. The total has not: the controller's M covers it, so that the arm's inertia counts
+        once.
+
+        Args:
+            odometry: estimate at this stamp.
+            joints: encoders at the same stamp.
+            achieved: wrench of the thrusts commanded at the stamp before; None if not known, which
+                leaves the external wrench as it was.
+
+        Raises:
+            SignalError: stamps differ or do not increase, a value is not finite or has a wrong
+                shape. The observer is as it was before.
+        """
+        self._check(odometry, joints, achieved)
+        now = Moment(odometry.quaternion, odometry.nu, joints.position, joints.velocity)
+        dt = 0.0 if self._stamp is None else to_seconds(odometry.stamp - self._stamp)
+        external = self._observe_external(dt, now, achieved)
+        nu_dot, q_ddot = self._accelerations(dt, odometry, joints)
+        self._stamp, self._before = odometry.stamp, now
+        restoring = restoring_wrench(self._model, now.quaternion, now.q)
+        coupling = coupling_wrench(self._model, now.nu, nu_dot, now.q, now.q_dot, q_ddot)
+        held = coupling_wrench(self._model, now.nu, NOT_MOVING, now.q, now.q_dot, q_ddot)
+        total = restoring + held + (external if self._config.external else 0.0)
+        budget = DisturbanceBudget(odometry.stamp, restoring, coupling, external)
+        return budget, Wrench(odometry.stamp, total)
+
+    def _observe_external(self, dt: float, now: Moment, achieved: Wrench | None) -> Array:
+        if achieved is None or self._before is None:
+            return self._external.wrench
+        thrust = self._lag.step(dt, achieved.wrench)
+        return self._external.step(dt, self._before, now, thrust)
+
+    def _accelerations(
+        self, dt: float, odometry: Odometry, joints: JointStates
+    ) -> tuple[Array, Array]:
+        """Vehicle (6,), body frame, and joints (n,)."""
+        measured = np.vstack((joints.position, joints.velocity))
+        q_ddot = self._joints.step(dt, measured, self._encoder_variances)[2]
+        variances = odometry.twist_covariance.diagonal().reshape(2, 3).mean(axis=1)
+        linear = self._linear.step(dt, odometry.nu[None, :3], variances[:1])[1]
+        angular = self._angular.step(dt, odometry.nu[None, 3:], variances[1:])[1]
+        return np.concatenate((linear, angular)), q_ddot
+
+    def _check(self, odometry: Odometry, joints: JointStates, achieved: Wrench | None) -> None:
+        if self._stamp is not None:
+            checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
+        if joints.stamp != odometry.stamp:
+            raise SignalError(
+                f"joints.stamp is {joints.stamp} ns; it must be the odometry's, {odometry.stamp} ns"
+            )
+        checks.quaternion("odometry.quaternion", odometry.quaternion)
+        checks.array("odometry.nu", odometry.nu, (6,))
+        checks.array("odometry.twist_covariance", odometry.twist_covariance, (6, 6))
+        checks.array("joints.position", joints.position, (self._n,))
+        checks.array("joints.velocity", joints.velocity, (self._n,))
+        if achieved is not None:
+            checks.array("achieved.wrench", achieved.wrench, (6,))
+
+
+def _encoder_variances(vehicle: Vehicle) -> Array:
+    """Variances (2,) of angle and rate; rounding to a step s adds s^2 / 12."""
+    encoders = vehicle.sensors.encoders
+    angle = encoders.noise_deg**2 + encoders.resolution_deg**2 / 12.0
+    return np.radians(1.0) ** 2 * np.array([angle, encoders.rate_noise_deg_s**2])

@@ -1,0 +1,89 @@
+"""Derivatives of measured signals: a Kalman filter whose highest derivative is a random walk.
+
+Differences of neighbouring samples amplify noise by 1/dt, and a fixed low-pass must be tuned to
+each sensor. The tracking filter is the best linear compromise for a stated noise and a stated jerk
+J: with x = (y, y', .., y^(k-1)),
+
+    x(t + dt) = F x,  F_ij = dt^(j-i) / (j-i)!,   Q = J^2 * integral of (F(s) e_k)(F(s) e_k)^T,
+
+and any of the lower derivatives may be measured as well (an encoder's rate, say). Its estimate has
+no lag while y^(k-1) is constant. All channels of a filter share one noise and so one covariance.
+"""
+
+from math import factorial
+
+import numpy as np
+
+from uvms_dynamics.signals import Array
+
+VARIANCE_FLOOR = 1e-18
+"""Keeps the innovation invertible when perfect measurements are fed in."""
+
+
+class TrackingFilter:
+    """Value and derivatives of several channels with the same noise.
+
+    Args:
+        order: number of derivatives kept, the value included (k).
+        jerk: rms change of the highest derivative within one second, J.
+    """
+
+    def __init__(self, order: int, jerk: float) -> None:
+        self._order = order
+        self._density = jerk**2
+        self._x: Array | None = None  # (k, channels)
+        self._P = np.zeros((order, order))
+        self._dt = 0.0  # of these
+        self._F = np.eye(order)
+        self._Q = np.zeros((order, order))
+
+    def step(self, dt: float, measured: Array, variances: Array) -> Array:
+        """Estimate (k, channels) after dt, given the value and its first derivatives (m, channels).
+
+        The first call starts from the measurement, with all higher derivatives zero.
+
+        Args:
+            dt: since the last call, s.
+            measured: (m, channels), m <= k.
+            variances: (m,) of their noise.
+        """
+        count = len(variances)
+        noise = np.diag(np.maximum(variances, VARIANCE_FLOOR))
+        if self._x is None:
+            return self._start(measured, noise)
+        if dt != self._dt:
+            self._dt, self._F = dt, _transition(self._order, dt)
+            self._Q = self._density * _walk(self._order, dt)
+        x, P = self._F @ self._x, self._F @ self._P @ self._F.T + self._Q
+        K = P[:, :count] @ np.linalg.inv(P[:count, :count] + noise)
+        left = np.eye(self._order)
+        left[:, :count] -= K
+        P = left @ P @ left.T + K @ noise @ K.T
+        self._x, self._P = x + K @ (measured - x[:count]), 0.5 * (P + P.T)
+        return self._x
+
+    def _start(self, measured: Array, noise: Array) -> Array:
+        count = len(noise)
+        self._x = np.zeros((self._order, measured.shape[1]))
+        self._x[:count] = measured
+        self._P = self._density * np.eye(self._order)
+        self._P[:count, :count] = noise
+        return self._x
+
+
+def _transition(order: int, dt: float) -> Array:
+    F = np.zeros((order, order))
+    for i in range(order):
+        for j in range(i, order):
+            F[i, j] = dt ** (j - i) / factorial(j - i)
+    return F
+
+
+def _walk(order: int, dt: float) -> Array:
+    """Covariance of a unit random walk of the last derivative, integrated over dt."""
+    Q = np.zeros((order, order))
+    for i in range(order):
+        for j in range(order):
+            a, b = order - 1 - i, order - 1 - j
+            Q[i, j] = dt ** (a + b + 1) / ((a + b + 1) * factorial(a) * factorial(b))
+    return Q
