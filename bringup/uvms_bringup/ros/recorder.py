@@ -7,7 +7,7 @@ from rclpy.node import Node
 
 from uvms_bringup.log.schema import qos_yaml
 from uvms_dynamics import topics
-from uvms_dynamics.ros.convert import action_class, message_class
+from uvms_dynamics.ros.convert import message_class
 from uvms_dynamics.ros.node import qos_profile
 from uvms_dynamics.signals import NANOSECONDS
 from uvms_dynamics.topics import Topic
@@ -18,7 +18,11 @@ UNSTAMPED = {topics.TF.name, topics.TF_STATIC.name, topics.ROBOT_DESCRIPTION.nam
 
 
 class Recorder:
-    """Subscribes to all topics of the table and of the planner's actions.
+    """Subscribes to all topics of the table.
+
+    The hidden topics of the planner's actions are left out: they hold random goal ids, so that no
+    two runs were alike, and mcap_ros2 refuses the name of a feedback's type. What a feedback says
+    stands in the planner's diagnostics, too.
 
     Args:
         node: whose subscriptions these are.
@@ -31,17 +35,11 @@ class Recorder:
         self.newest: dict[str, int] = {}
         for topic in topics.ALL:
             self._subscribe(node, topic)
-        for action in topics.ACTIONS:
-            for part, cls in _action_topics(action_class(action)):
-                name = f"{action.name}/_action/{part}"
-                kind = f"{action.type}_FeedbackMessage"
-                type_name = kind if part == "feedback" else "action_msgs/msg/GoalStatusArray"
-                self._subscribe(node, Topic(name, type_name), cls)
 
-    def _subscribe(self, node: Node, topic: Topic, cls: type | None = None) -> None:
+    def _subscribe(self, node: Node, topic: Topic) -> None:
         name = topic.resolve(node.get_namespace())
         qos = qos_yaml(topic.qos)
-        stamped = topic.name not in UNSTAMPED and cls is None
+        stamped = topic.name not in UNSTAMPED
 
         def receive(data: bytes) -> None:
             stamp = stamp_of(data) if stamped else self.stamp
@@ -51,7 +49,7 @@ class Recorder:
             self._write(name, topic.type, qos, stamp, data)
 
         node.create_subscription(
-            cls or message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
+            message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
         )
 
 
@@ -59,10 +57,3 @@ def stamp_of(data: bytes) -> int:
     """Stamp in ns of a message that begins with a header or a time, from its CDR bytes."""
     seconds, nanoseconds = unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)
     return seconds * NANOSECONDS + nanoseconds
-
-
-def _action_topics(action: type) -> tuple[tuple[str, type], ...]:
-    return (
-        ("feedback", action.Impl.FeedbackMessage),
-        ("status", action.Impl.GoalStatusMessage),
-    )

@@ -21,7 +21,6 @@ from uvms_dynamics.ros.node import qos_profile
 from uvms_dynamics.ros.spin import Spinner, start
 from uvms_dynamics.signals import to_seconds
 
-FEEDBACK = "_FeedbackMessage"
 DISCOVERY_S = 1.0
 """Wall time that others get to find the publishers before the first message."""
 LEAST_SLEEP_S = 1e-3
@@ -62,10 +61,8 @@ def replay(
 
 
 def message_type(type_name: str) -> type | None:
-    """The class of a message type, feedback of actions included; None if it is not installed."""
+    """The class of a message type; None if it is not installed."""
     try:
-        if type_name.endswith(FEEDBACK):
-            return interface_class(type_name.removesuffix(FEEDBACK)).Impl.FeedbackMessage
         return interface_class(type_name)
     except (ImportError, AttributeError):
         return None

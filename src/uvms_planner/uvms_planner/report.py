@@ -92,5 +92,8 @@ class PlannerStep:
 
     def diagnostics(self) -> dict[str, Any]:
         """Numbers for /diagnostics by name; empty when nothing was chosen and no goal is active."""
-        progress = {"elapsed_s": self.feedback.elapsed} if self.feedback is not None else {}
-        return progress | (self.step.values() if self.step is not None else {})
+        values: dict[str, Any] = {}
+        if self.feedback is not None:  # here too, since logs do not hold an action's feedback
+            values["elapsed_s"] = self.feedback.elapsed
+            values["tracking_error_m"] = self.feedback.tracking_error
+        return values | (self.step.values() if self.step is not None else {})
