@@ -72,10 +72,10 @@ class FitnessConfig(Config):
     """What makes a candidate good; with all three numbers zero it is eq. (18) as printed."""
 
     lookahead_s: float = Field(
-        3.0, ge=0, le=60.0, description="s, restoring wrench where the arm's motion leads in this"
+        6.0, ge=0, le=60.0, description="s, restoring wrench where the arm's motion leads in this"
     )
     smoothness_weight: float = Field(
-        0.02, ge=0, description="N^2 (or N^2 m^2) for a change of rate of one full acceleration"
+        1.0, ge=0, description="N^2 (or N^2 m^2) for a change of rate at full acceleration"
     )
     vehicle_motion_weight: float = Field(
         0.2, ge=0, description="N^2 (or N^2 m^2) for the vehicle moving at its full rate"

@@ -3,10 +3,13 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.linalg import norm
 from scipy.interpolate import CubicHermiteSpline, PchipInterpolator
 from scipy.spatial.transform import Rotation
 
 from uvms_dynamics.signals import Array, PathGoal
+
+NEGLIGIBLE = 1e-7  # m or rad between the tool and the beginning of a path
 
 
 class PathSample(NamedTuple):
@@ -67,11 +70,11 @@ class JoinedPath:
         self._path = path
         self._approach = min(approach, path.duration)
         start = path.sample(0.0)
-        self._gap = position - start.position
-        self._turn = np.zeros(3)
+        self._gap, self._turn = position - start.position, np.zeros(3)
         if start.quaternion is not None:
             first = Rotation.from_quat(start.quaternion)
             self._turn = (Rotation.from_quat(quaternion) * first.inv()).as_rotvec()
+        self._begins_on_path = max(norm(self._gap), norm(self._turn)) < NEGLIGIBLE
 
     @property
     def duration(self) -> float:
@@ -90,7 +93,7 @@ class JoinedPath:
 
     def joined(self, time: float) -> bool:
         """Whether the gap has faded at `time` s, or there was none."""
-        return time >= self._approach or not (np.any(self._gap) or np.any(self._turn))
+        return time >= self._approach or self._begins_on_path
 
     def sample(self, time: float) -> PathSample:
         """As of EndEffectorPath."""

@@ -61,7 +61,7 @@ class MotionPlanner:
             raise GoalRejected("no odometry yet: the planner does not know where the vehicle is")
         if self._goal is not None or self._finished is not None:
             raise GoalRejected("another goal is active: wait for its end, or cancel it")
-        knot = self._stop.end
+        knot = self._stop.end(self._knot.stamp)
         if isinstance(goal, JointGoal):
             check_joint_goal(goal, knot.configuration[VEHICLE:], self._solver.joints)
             accepted = JointMotion(goal, knot.configuration, knot.stamp, self._config.step_s)

@@ -36,13 +36,12 @@ class Stop:
         """Stamp from which on nothing moves."""
         return self._start.stamp + self._steps * to_nanoseconds(self._step)
 
-    @property
-    def end(self) -> Knot:
-        """The knot at rest in which the motion ends."""
+    def end(self, stamp: int) -> Knot:
+        """The first knot at rest that is not before `stamp`."""
         knot, times = self._start, np.array([0.0, self._step])
         while knot.stamp < self.rest:
             knot, _ = self.plan(knot, times)
-        return Knot.at_rest(self.rest, knot.configuration)
+        return Knot.at_rest(max(stamp, self.rest), knot.configuration)
 
     def plan(self, knot: Knot, times) -> tuple[Knot, Samples]:
         """The next knot after `knot`, and the motion to it at `times` (k,) s."""
