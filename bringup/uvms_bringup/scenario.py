@@ -16,10 +16,9 @@ from uvms_dynamics import (
     build_model,
     end_effector,
     load_vehicle,
-    matrix_to_quat,
-    rpy_to_quat,
 )
 from uvms_dynamics.config import Config, validated
+from uvms_dynamics.rotations import matrix_to_quat, rpy_to_quat
 from uvms_dynamics.signals import Array, JointGoal, PathGoal
 from uvms_dynamics.vehicle.locate import reference_file
 from uvms_observer import NavigationConfig, ObserverConfig

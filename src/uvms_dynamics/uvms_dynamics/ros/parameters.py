@@ -8,6 +8,7 @@ from pydantic import BaseModel
 from pydantic.fields import FieldInfo
 from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
 from rclpy.node import Node
+from rclpy.parameter import Parameter
 
 from uvms_dynamics.config import Config, validated
 
@@ -30,14 +31,27 @@ def declare_config(node: Node, model: type[C]) -> C:
     for path, field, default in _leaves(model, model()):
         name = ".".join(path)
         if not node.has_parameter(name):
-            node.declare_parameter(name, _to_ros(default), _descriptor(field))
-        _store(values, path, node.get_parameter(name).value)
+            _declare_field(node, name, default, field)
+        value = node.get_parameter_or(name).value
+        if value is not None:
+            _store(values, path, value)
     return validated(model, values, f"parameters of {node.get_name()}")
 
 
 def flatten(config: Config) -> dict[str, Any]:
-    """A configuration as ROS parameter names and values, for a parameter file."""
-    return {".".join(path): _to_ros(value) for path, _, value in _leaves(type(config), config)}
+    """A configuration as ROS parameter names and values, for a parameter file.
+
+    Empty lists are left out: ROS cannot tell their type, and they are the defaults.
+    """
+    leaves = _leaves(type(config), config)
+    return {".".join(path): _to_ros(value) for path, _, value in leaves if value != ()}
+
+
+def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
+    if default == ():
+        node.declare_parameter(name, Parameter.Type.DOUBLE_ARRAY, _descriptor(field))
+    else:
+        node.declare_parameter(name, _to_ros(default), _descriptor(field))
 
 
 def _leaves(
