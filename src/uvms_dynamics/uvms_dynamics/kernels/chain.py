@@ -1,10 +1,13 @@
 """Where the arm's frames and the tool are: poses, Jacobian, weight and buoyancy."""
 
 import numpy as np
+from numba import njit
 
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.spatial import cross, turn_about_z
 from uvms_dynamics.rotations import quat_to_matrix
+
+_inlined = njit(cache=True, error_model="numpy", forceinline=True)  # `inner` that may allocate
 
 
 @inner
@@ -21,7 +24,7 @@ def joint_rotations(model, q, rotation):
         turn_about_z(model.tree_rotation, i, q[i] + model.joint_offset[i], rotation)
 
 
-@inner
+@_inlined
 def joint_frames(model, q):
     """Origins (n, 3) and rotations (n, 3, 3) of the joint frames in the body frame."""
     n = q.shape[0]
@@ -51,7 +54,7 @@ def _place(origin, rotation, i, position, turned):
             rotation[i, row, column] = total
 
 
-@inner
+@_inlined
 def tool_in_body(model, origin, rotation):
     """Tool position (3,) and rotation (3, 3) in the body frame, from the joint frames."""
     last = origin.shape[0] - 1
