@@ -1,13 +1,15 @@
 """Clear rejections of paths that are malformed or cannot be followed."""
 
 import numpy as np
+from numpy.typing import NDArray
 
-from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array, PathGoal
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
+from uvms_planner.jit import kernel
 from uvms_planner.path import EndEffectorPath, JoinedPath
+from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project, within_tolerance
 from uvms_planner.solver import StepSolver
 
@@ -135,7 +137,15 @@ def go_along(model, problem, positions, rotations, lower, upper, frozen):
     return -1, 0.0, 0.0
 
 
-def _reject(path, time, problem, solver, distance, angle, frozen):
+def _reject(
+    path: EndEffectorPath | JoinedPath,
+    time: float,
+    problem: StepProblem,
+    solver: StepSolver,
+    distance: float,
+    angle: float,
+    frozen: NDArray[np.bool_],
+) -> None:
     """Say whether the rates or the reach are too small at `time`, and by how much."""
     lower = np.where(frozen, 0.0, np.minimum(solver.limits.lower - problem.configuration, 0.0))
     upper = np.where(frozen, 0.0, np.maximum(solver.limits.upper - problem.configuration, 0.0))
@@ -158,7 +168,7 @@ def _reject(path, time, problem, solver, distance, angle, frozen):
     )
 
 
-def _misses(problem, distance: float, angle: float) -> str:
+def _misses(problem: StepProblem, distance: float, angle: float) -> str:
     if distance >= problem.position_tolerance:
         return f"{distance:.4g} m behind, allowed {problem.position_tolerance:g} m"
     allowed = np.rad2deg(problem.orientation_tolerance)
@@ -167,7 +177,8 @@ def _misses(problem, distance: float, angle: float) -> str:
 
 def _angle_between(first: Array, second: Array) -> float:
     cosine = abs(float(np.dot(first, second)))
-    return 2.0 * float(np.arccos(min(cosine / (np.linalg.norm(first) * np.linalg.norm(second)), 1)))
+    scale = float(np.linalg.norm(first) * np.linalg.norm(second))
+    return 2.0 * float(np.arccos(min(cosine / scale, 1.0)))
 
 
 def _numbers(values: Array) -> str:

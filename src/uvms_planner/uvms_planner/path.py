@@ -74,7 +74,7 @@ class JoinedPath:
         if start.quaternion is not None:
             first = Rotation.from_quat(start.quaternion)
             self._turn = (Rotation.from_quat(quaternion) * first.inv()).as_rotvec()
-        self._begins_on_path = max(norm(self._gap), norm(self._turn)) < NEGLIGIBLE
+        self._begins_on_path = bool(max(norm(self._gap), norm(self._turn)) < NEGLIGIBLE)
 
     @property
     def duration(self) -> float:
@@ -93,7 +93,7 @@ class JoinedPath:
 
     def joined(self, time: float) -> bool:
         """Whether the gap has faded at `time` s, or there was none."""
-        return time >= self._approach or self._begins_on_path
+        return self._begins_on_path or time >= self._approach
 
     def sample(self, time: float) -> PathSample:
         """As of EndEffectorPath."""

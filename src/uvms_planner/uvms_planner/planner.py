@@ -1,5 +1,7 @@
 """The motion planner: one call each step gives the motion of vehicle and joints one step ahead."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from uvms_dynamics import Vehicle, end_effector
@@ -17,16 +19,24 @@ from uvms_dynamics.signals import (
 )
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
-from uvms_planner.follow import PathFollower
+from uvms_planner.follow import FollowedStep, PathFollower
 from uvms_planner.goal_check import check_path_goal, check_reachable, check_start
 from uvms_planner.joint_motion import JointMotion, check_joint_goal
-from uvms_planner.path import EndEffectorPath, JoinedPath
+from uvms_planner.path import EndEffectorPath, JoinedPath, PathSample
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
 from uvms_planner.segment import Knot, Samples, reference
 from uvms_planner.solver import StepSolver
 from uvms_planner.stop import Stop
+
+
+@dataclass
+class _Plan:
+    """How far the motion is planned, and how it would come to rest from there."""
+
+    knot: Knot
+    stop: Stop
 
 
 class MotionPlanner:
@@ -43,8 +53,7 @@ class MotionPlanner:
         self._step = to_nanoseconds(config.step_s)
         self._times = _sample_times(config)
         self._tick: int | None = None
-        self._knot: Knot | None = None
-        self._stop: Stop | None = None
+        self._plan: _Plan | None = None
         self._goal: PathFollower | JointMotion | None = None
         self._finished: GoalResult | None = None
         self._planned_error = 0.0
@@ -52,22 +61,21 @@ class MotionPlanner:
         self._diagnostics: StepDiagnostics | None = None
 
     def accept(self, goal: PathGoal | JointGoal) -> None:
-        """Begin a goal with the first segment that is not planned yet.
+        """Begin a goal with the first segment that is not planned yet, or once at rest.
 
         Raises GoalRejected where the goal is malformed, cannot be followed, or comes too early (no
         odometry yet) or too late (another goal is active).
         """
-        if self._stop is None:
+        if self._plan is None:
             raise GoalRejected("no odometry yet: the planner does not know where the vehicle is")
         if self._goal is not None or self._finished is not None:
             raise GoalRejected("another goal is active: wait for its end, or cancel it")
-        knot = self._stop.end(self._knot.stamp)
+        knot = self._plan.stop.end(self._plan.knot.stamp)
         if isinstance(goal, JointGoal):
             check_joint_goal(goal, knot.configuration[VEHICLE:], self._solver.joints)
-            accepted = JointMotion(goal, knot.configuration, knot.stamp, self._config.step_s)
+            self._goal = JointMotion(goal, knot.configuration, knot.stamp, self._config.step_s)
         else:
-            accepted = self._follower(goal, knot)
-        self._goal = accepted
+            self._goal = self._follower(goal, knot)
         self._planned_error = self._max_planned_error = 0.0
 
     def _follower(self, goal: PathGoal, knot: Knot) -> PathFollower:
@@ -91,9 +99,10 @@ class MotionPlanner:
 
         Raises SignalError before the first step.
         """
-        if self._stop is None or self._knot is None:
+        if self._plan is None:
             raise SignalError("motion planner: no step yet, the end effector is not known")
-        position, rotation = tool_pose(self._solver.model, self._knot.configuration)
+        knot = self._plan.stop.end(self._plan.knot.stamp)
+        position, rotation = tool_pose(self._solver.model, knot.configuration)
         return position, matrix_to_quat(rotation)
 
     def step(self, stamp: int, odometry: Odometry, joints: JointStates) -> PlannerStep:
@@ -103,51 +112,63 @@ class MotionPlanner:
         """
         self._check(stamp, odometry, joints)
         self._tick = stamp
-        if self._knot is None:
-            self._hold_at(stamp, odometry, joints)
         self._diagnostics = None
+        if self._plan is None:
+            self._plan = self._hold_at(stamp, odometry, joints)
         references: list[Reference] = []
-        while self._knot.stamp < stamp + 2 * self._step:
-            references.append(self._plan())
+        while self._plan.knot.stamp < stamp + 2 * self._step:
+            references.append(self._extend(self._plan))
         feedback = self._feedback(stamp, odometry, joints)
         if self._goal is not None and stamp >= self._goal.end:
-            self._complete()
+            self._end_goal(True, "the end of the goal is reached")
         finished, self._finished = self._finished, None
         return PlannerStep(tuple(references), feedback, finished, self._diagnostics)
 
-    def _plan(self) -> Reference:
-        """The segment after the last knot."""
-        start, samples = self._knot, None
-        if self._goal is not None and self._goal.start <= start.stamp < self._goal.end:
-            samples = self._along_goal(start)
-        if samples is None:
-            self._knot, samples = self._stop.plan(start, self._times)
-        return reference(self._solver.model, start.stamp, self._times, samples)
+    def _hold_at(self, stamp: int, odometry: Odometry, joints: JointStates) -> _Plan:
+        """Begin at rest in the pose of the first tick, level."""
+        x, y, z, w = odometry.quaternion
+        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
+        configuration = np.concatenate([odometry.position, [yaw], joints.position])
+        knot = Knot.at_rest(stamp, configuration)
+        return _Plan(knot, self._stop_from(knot))
 
-    def _along_goal(self, start: Knot) -> Samples | None:
-        """The goal's next segment; None, the goal being given up, where it cannot be reached."""
-        goal = self._goal
-        if isinstance(goal, JointMotion):
-            self._knot, samples = goal.plan(start, self._times)
-            self._stop = Stop(self._solver, self._knot, self._config.step_s)
-            return samples
-        step = goal.plan(start, self._times)
+    def _stop_from(self, knot: Knot, anchor: PathSample | None = None) -> Stop:
+        return Stop(self._solver, knot, self._config.step_s, anchor)
+
+    def _extend(self, plan: _Plan) -> Reference:
+        """The segment after the last knot: the goal's, or towards rest."""
+        stamp, goal, samples = plan.knot.stamp, self._goal, None
+        if goal is not None and goal.start <= stamp < goal.end:
+            if isinstance(goal, JointMotion):
+                samples = self._along_joints(plan, goal)
+            else:
+                samples = self._along_path(plan, goal)
+        if samples is None:
+            plan.knot, samples = plan.stop.plan(plan.knot, self._times)
+        return reference(self._solver.model, stamp, self._times, samples)
+
+    def _along_joints(self, plan: _Plan, goal: JointMotion) -> Samples:
+        plan.knot, samples = goal.plan(plan.knot, self._times)
+        plan.stop = self._stop_from(plan.knot)
+        return samples
+
+    def _along_path(self, plan: _Plan, goal: PathFollower) -> Samples | None:
+        """The path's next segment; None, the goal being given up, where it cannot be reached."""
+        begin = goal.elapsed(plan.knot.stamp)
+        step = goal.plan(plan.knot, self._times)
         self._diagnostics = StepDiagnostics.of(self._config.method, self._solver, step)
         self._planned_error = step.planned_error
         if not step.choice.valid:
             self._end_goal(False, _unreachable(goal, step, self._config))
             return None
-        if goal.path.joined(goal.elapsed(start.stamp)):
+        if goal.path.joined(begin):
             self._max_planned_error = max(self._max_planned_error, step.planned_error)
-        self._knot = step.knot
-        anchor = None
-        if step.knot.stamp >= goal.end:
-            anchor = goal.path.sample(goal.path.duration)
-        self._stop = Stop(self._solver, self._knot, self._config.step_s, anchor)
+        plan.knot = step.knot
+        over = step.knot.stamp >= goal.end
+        plan.stop = self._stop_from(
+            step.knot, goal.path.sample(goal.path.duration) if over else None
+        )
         return step.samples
-
-    def _complete(self) -> None:
-        self._end_goal(True, "the end of the goal is reached")
 
     def _end_goal(self, success: bool, message: str) -> None:
         self._finished = GoalResult(success, message, self._max_planned_error)
@@ -159,8 +180,8 @@ class MotionPlanner:
             return None
         elapsed = goal.elapsed(stamp)
         if isinstance(goal, JointMotion):
-            duration, c = goal.duration, goal.sample(np.array([elapsed])).configuration[0]
-            wanted = tool_pose(self._solver.model, c)[0]
+            configuration = goal.sample(np.array([elapsed])).configuration[0]
+            duration, wanted = goal.duration, tool_pose(self._solver.model, configuration)[0]
         else:
             duration, wanted = goal.path.duration, goal.path.goal.sample(elapsed).position
         actual = end_effector(
@@ -173,14 +194,6 @@ class MotionPlanner:
             planned_error=self._planned_error,
             tracking_error=float(np.linalg.norm(actual - wanted)),
         )
-
-    def _hold_at(self, stamp: int, odometry: Odometry, joints: JointStates) -> None:
-        """Begin at rest in the pose of the first tick, level."""
-        x, y, z, w = odometry.quaternion
-        yaw = np.arctan2(2 * (w * z + x * y), 1 - 2 * (y * y + z * z))
-        configuration = np.concatenate([odometry.position, [yaw], joints.position])
-        self._knot = Knot.at_rest(stamp, configuration)
-        self._stop = Stop(self._solver, self._knot, self._config.step_s)
 
     def _check(self, stamp: int, odometry: Odometry, joints: JointStates) -> None:
         if self._tick is not None and stamp <= self._tick:
@@ -207,7 +220,7 @@ def _sample_times(config: PlannerConfig) -> Array:
     return np.linspace(0.0, config.step_s, count + 1)
 
 
-def _unreachable(goal: PathFollower, step, config: PlannerConfig) -> str:
+def _unreachable(goal: PathFollower, step: FollowedStep, config: PlannerConfig) -> str:
     time = goal.elapsed(step.knot.stamp)
     allowed = config.projection.position_tolerance_m
     return (
