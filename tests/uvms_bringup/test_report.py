@@ -1,0 +1,77 @@
+"""The report draws every figure and writes a page that needs nothing else."""
+
+import base64
+import json
+import re
+
+import pytest
+from matplotlib.image import imread
+from synthetic import Known, write_log
+
+from uvms_bringup.errors import LogError
+from uvms_bringup.log.writer import LogWriter
+from uvms_bringup.report import FIGURES, report
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    folder = tmp_path_factory.mktemp("run")
+    write_log(folder / "run.mcap", Known(duration=6.0, path_duration=4.0))
+    (folder / "summary.json").write_text(json.dumps({"completed": True, "wall_s": 2.0}))
+    report(folder / "run.mcap")
+    return folder
+
+
+def test_every_figure_is_drawn(folder):
+    for name in FIGURES:
+        picture = imread(folder / f"{name}.png")
+        assert picture.shape[1] > 900
+        assert picture.std() > 0.02, f"{name} is empty"
+
+
+def test_the_page_holds_all_figures_and_nothing_from_elsewhere(folder):
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    images = re.findall(r'<figure id="(\w+)"><img [^>]*src="data:image/png;base64,([^"]+)"', page)
+    assert [name for name, _ in images] == list(FIGURES)
+    for name, data in images:
+        assert base64.b64decode(data) == (folder / f"{name}.png").read_bytes()
+    assert not re.search(r"""(src|href)=["'](?!data:)""", page)
+    assert "url(" not in page
+
+
+def test_the_page_tells_of_the_run(folder):
+    page = (folder / "report.html").read_text(encoding="utf-8")
+    for text in ("synthetic, seed 7", "completed", "git_revision", "abc", "config.yaml", "dark"):
+        assert text in page
+    assert "<tr><th>real_time_factor</th><td>3</td></tr>" in page
+    assert "<tr><th>navigation_error_m.rms</th><td>0.03</td></tr>" in page
+
+
+def test_what_users_wrote_is_escaped(tmp_path):
+    with LogWriter(tmp_path / "run.mcap") as log:
+        log.metadata("uvms", {"scenario": "<script>x</script>", "seed": 1})
+    page = report(tmp_path / "run.mcap", tmp_path / "out").read_text(encoding="utf-8")
+    assert "<script>" not in page
+    assert "&lt;script&gt;x&lt;/script&gt;" in page
+
+
+def test_figures_that_cannot_be_drawn_say_why(tmp_path):
+    LogWriter(tmp_path / "run.mcap").close()
+    page = report(tmp_path / "run.mcap").read_text(encoding="utf-8")
+    assert page.count("No figure: ") == len(FIGURES)
+    assert "not completed" not in page
+    assert not list(tmp_path.glob("*.png"))
+
+
+def test_a_broken_off_log_is_told(tmp_path, folder):
+    data = (folder / "run.mcap").read_bytes()
+    (tmp_path / "run.mcap").write_bytes(data[: len(data) // 2])
+    page = report(tmp_path / "run.mcap").read_text(encoding="utf-8")
+    assert "The log is not complete: its writer did not come to its end" in page
+    assert "not completed" in page
+
+
+def test_a_folder_that_cannot_be_made_is_named(folder, tmp_path):
+    (tmp_path / "file").write_text("")
+    with pytest.raises(LogError, match="cannot be written"):
+        report(folder / "run.mcap", tmp_path / "file" / "out")
