@@ -93,7 +93,7 @@ def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, 
     position, R_world_tool = end_effector(
         build_model(vehicle),
         np.array(plant.initial_position_m, dtype=float),
-        rpy_to_quat(np.deg2rad(np.array(plant.initial_rpy_deg, dtype=float))),
+        rpy_to_quat(*np.deg2rad(np.array(plant.initial_rpy_deg, dtype=float))),
         np.deg2rad(np.array(plant.initial_joints_deg, dtype=float)),
     )
     return position, matrix_to_quat(R_world_tool)
