@@ -20,10 +20,11 @@ def number(name: str, value: float) -> None:
 
 def array(name: str, value: Any, shape: tuple[int, ...]) -> None:
     """SignalError unless the value is a float64 array of this shape with finite entries."""
-    if not isinstance(value, np.ndarray) or value.shape != shape:
-        raise SignalError(f"{name} has shape {np.shape(value)}; it must have {shape}")
-    if value.dtype != np.float64:
-        raise SignalError(f"{name} has type {value.dtype}; it must have float64")
+    if not isinstance(value, np.ndarray) or value.dtype != np.float64:
+        kind = value.dtype if isinstance(value, np.ndarray) else type(value).__name__
+        raise SignalError(f"{name} has type {kind}; it must be an array of float64")
+    if value.shape != shape:
+        raise SignalError(f"{name} has shape {value.shape}; it must have {shape}")
     flat = value.ravel()
     if not isfinite(flat.dot(flat)):  # one fast test; the slow way only names the culprit
         _name_culprit(name, value)

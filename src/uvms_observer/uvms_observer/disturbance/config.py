@@ -21,18 +21,18 @@ class ObserverConfig(Config):
         "residual), rad/s; keep it below a third of the controller's",
     )
     joint_jerk_rad_s3: float = Field(
-        0.3,
+        0.05,
         gt=0.0,
         description="how much a joint's acceleration changes within one second, rad/s^3; larger "
         "follows faster and lets more encoder noise through",
     )
     vehicle_jerk_m_s3: float = Field(
-        0.05,
+        0.02,
         gt=0.0,
         description="how much the vehicle's acceleration changes within one second, m/s^3",
     )
     vehicle_jerk_rad_s3: float = Field(
-        0.1,
+        0.05,
         gt=0.0,
         description="how much its angular acceleration changes within one second, rad/s^3",
     )

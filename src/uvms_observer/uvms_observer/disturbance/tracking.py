@@ -37,6 +37,11 @@ class TrackingFilter:
         self._F = np.eye(order)
         self._Q = np.zeros((order, order))
 
+    @property
+    def covariance(self) -> Array:
+        """Of the error of value and derivatives, (k, k), the same for every channel."""
+        return self._P
+
     def step(self, dt: float, measured: Array, variances: Array) -> Array:
         """Estimate (k, channels) after dt, given the value and its first derivatives (m, channels).
 
