@@ -4,29 +4,32 @@ A file without its index is read from the start, chunk by chunk, to the last chu
 so a log of a run that was killed is as good as its last chunk, and says so.
 """
 
+import os
 import struct
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from io import BytesIO
 from pathlib import Path
+from typing import Any, BinaryIO
 
 from mcap.data_stream import ReadDataStream
-from mcap.exceptions import InvalidMagic, McapError
+from mcap.exceptions import McapError
 from mcap.opcode import Opcode
-from mcap.records import (
-    Attachment,
-    Channel,
-    Chunk,
-    McapRecord,
-    Message,
-    Metadata,
-    Schema,
-)
-from mcap.stream_reader import StreamReader, get_chunk_data_stream
+from mcap.records import Attachment, Channel, Chunk, Message, Metadata, Schema
+from mcap.stream_reader import get_chunk_data_stream
+from mcap.writer import MCAP0_MAGIC
 from zstandard import ZstdError
 
 from uvms_bringup.errors import LogError
 
+_READERS: dict[int, Callable[[bytes], Any]] = {
+    Opcode.CHUNK: lambda body: Chunk.read(_stream(body)),
+    Opcode.SCHEMA: lambda body: Schema.read(_stream(body)),
+    Opcode.CHANNEL: lambda body: Channel.read(_stream(body)),
+    Opcode.MESSAGE: lambda body: Message.read(_stream(body), len(body)),
+    Opcode.ATTACHMENT: lambda body: Attachment.read(_stream(body)),
+    Opcode.METADATA: lambda body: Metadata.read(_stream(body)),
+}
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 
@@ -70,42 +73,50 @@ def read_records(path: str | Path) -> Records:
     records = Records(Path(path))
     try:
         with open(path, "rb") as file:
-            _read(records, StreamReader(file, emit_chunks=True))
+            _read(records, file, os.fstat(file.fileno()).st_size)
     except OSError as fault:
         raise LogError(f"log {path}: cannot be read: {fault.strerror}") from fault
     return records
 
 
-def _read(records: Records, reader: StreamReader) -> None:
-    damaged = 0
-    last: McapRecord | None = None
-    try:
-        for last in reader.records:
-            damaged += not _stored(records, last)
-    except InvalidMagic as fault:
-        if last is None:
-            raise LogError(f"log {records.path}: is not an MCAP file") from fault
+def _read(records: Records, file: BinaryIO, size: int) -> None:
+    if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
+        raise LogError(f"log {records.path}: is not an MCAP file")
+    damaged, code = 0, 0
+    while code != Opcode.FOOTER:
+        head = file.read(_RECORD.size)
+        code, length = _RECORD.unpack(head) if len(head) == _RECORD.size else (0, size)
+        if length > size - file.tell():
+            records.fault = UNFINISHED
+            return
+        # Indexes are passed over: everything is read in order anyway.
+        if code in _READERS:
+            damaged += not _stored(records, code, file.read(length))
+        else:
+            file.seek(length, os.SEEK_CUR)
+    if file.read(len(MCAP0_MAGIC)) != MCAP0_MAGIC:
         records.fault = UNFINISHED
-    except _DAMAGE:
-        if last is None:
-            raise LogError(f"log {records.path}: is not an MCAP file, or an empty one") from None
-        records.fault = UNFINISHED
-    if not records.fault and damaged:
+    elif damaged:
         records.fault = f"{damaged} of its chunks are damaged and left out"
 
 
-def _stored(records: Records, record: McapRecord) -> bool:
+def _stored(records: Records, code: int, body: bytes) -> bool:
     """Whether the record is whole; if so, it is kept."""
     try:
-        _store(records, record)
+        _store(records, code, body)
     except _DAMAGE:
         return False
     return True
 
 
-def _store(records: Records, record: McapRecord) -> None:
+def _store(records: Records, code: int, body: bytes) -> None:
+    record = _READERS[code](body)
     if isinstance(record, Chunk):
-        _register(records, record)
+        data = _unpacked(record)
+        for inner, start, end in _walk(data):
+            if inner in (Opcode.SCHEMA, Opcode.CHANNEL):
+                _store(records, inner, data[start:end])
+        records.blocks.append(record)
     elif isinstance(record, Message):
         records.blocks.append(record)
     elif isinstance(record, Schema):
@@ -118,18 +129,8 @@ def _store(records: Records, record: McapRecord) -> None:
         records.metadata[record.name] = dict(record.metadata)
 
 
-def _register(records: Records, chunk: Chunk) -> None:
-    """Keep a chunk, and what it says of schemas and channels."""
-    data = _unpacked(chunk)
-    for code, start, end in _walk(data):
-        if code in (Opcode.SCHEMA, Opcode.CHANNEL):
-            _store(records, _parse(code, data[start:end]))
-    records.blocks.append(chunk)
-
-
-def _parse(code: int, body: bytes) -> Schema | Channel:
-    stream = ReadDataStream(BytesIO(body))
-    return Schema.read(stream) if code == Opcode.SCHEMA else Channel.read(stream)
+def _stream(body: bytes) -> ReadDataStream:
+    return ReadDataStream(BytesIO(body))
 
 
 def _unpacked(chunk: Chunk) -> bytes:

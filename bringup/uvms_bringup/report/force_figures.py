@@ -21,10 +21,10 @@ def self_disturbance(run: Analysis) -> Figure:
         for axes, (kind, unit, names, half) in zip(row, halves, strict=True):
             grey = {"color": "#aaaaaa", "linewidth": 0.6, "label": None}
             style.lines(axes, run.observed.time, observed[:, half], names, **grey)
-            style.lines(axes, run.disturbance.time, true[:, half], names)
+            style.lines(axes, run.disturbance.time, true[:, half], names, linewidth=0.8)
             axes.set_title(f"{part} {kind}")
             axes.set_ylabel(unit)
-            style.room(axes, true[:, half], 0.05)
+            style.room_but_peaks(axes, true[:, half], 0.05)
             if part == "restoring":
                 style.legend(axes)
             else:

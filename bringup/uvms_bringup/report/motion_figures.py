@@ -159,6 +159,7 @@ def vehicle(run: Analysis) -> Figure:
         axes.plot(style.thin(run.truth.time), style.thin(values), color=color, label="true")
         if plan is not None:
             axes.plot(run.planned.time, plan[:, index], label="planned", **style.REFERENCE)
+            values = np.concatenate([values, plan[:, index]])
         style.room(axes, values, 0.02 if linear else 1.0)
         axes.set_title(name)
         axes.set_ylabel("m" if linear else "deg")

@@ -83,7 +83,23 @@ def time_axis(axes: Axes, time: Array) -> None:
 
 def room(axes: Axes, values: Array, least: float) -> None:
     """Limits that show the values, but never magnify less than `least` to the full height."""
-    low, high = float(np.min(values)), float(np.max(values))
+    _limit(axes, float(np.min(values)), float(np.max(values)), least)
+
+
+def room_but_peaks(axes: Axes, values: Array, least: float) -> None:
+    """As `room`, but a few peaks do not squeeze all the rest; the greatest is told instead."""
+    low, high = np.percentile(values, (0.1, 99.9))
+    room_for = 1.5 * max(high - low, least)
+    peak = float(values.flat[np.argmax(np.abs(values))])
+    if np.ptp(values) <= 2.0 * room_for:
+        room(axes, values, least)
+        return
+    _limit(axes, float(low), float(high), room_for)
+    text = f"peak {peak:.3g}"
+    axes.text(0.99, 0.95, text, transform=axes.transAxes, ha="right", va="top", fontsize=8)
+
+
+def _limit(axes: Axes, low: float, high: float, least: float) -> None:
     middle, half = (low + high) / 2, max(high - low, least) * 0.55
     axes.set_ylim(middle - half, middle + half)
 
