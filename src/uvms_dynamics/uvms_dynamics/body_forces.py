@@ -85,7 +85,7 @@ def cross_flow_drag(
     environment: Environment,
 ) -> Array:
     """Drag ON a link by strips: df = -1/2 rho C_D(Re) D |v_n| v_n dl, v_n across the axis."""
-    _, reynolds, cd = resample(coefficient)
+    reynolds, cd = resample(coefficient)
     total = np.zeros(6)
     for cylinder in cylinders:
         axis, diameter = np.array(cylinder.axis), 2.0 * cylinder.radius_m

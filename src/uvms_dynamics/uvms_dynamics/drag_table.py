@@ -15,12 +15,15 @@ The top bits of a float64 are its exponent and mantissa, so they are the index o
 the file's table, linear in ln Re, the resampled one is off by less than 0.1 per cent.
 """
 
+FIRST_OCTAVE = -10
+"""The table begins at Re = 2**FIRST_OCTAVE; below it a strip's drag is nothing to speak of."""
 
-def resample(coefficient: DragCoefficient) -> tuple[int, Array, Array]:
-    """First octave, Reynolds numbers (k,) and C_D (k,); constant beyond the file's ends."""
-    first = math.floor(math.log2(coefficient.reynolds[0]))
-    last = math.ceil(math.log2(coefficient.reynolds[-1]))
-    steps = np.arange((last - first) * PER_OCTAVE + 1)
-    nodes = 2.0 ** (first + steps // PER_OCTAVE) * (1.0 + (steps % PER_OCTAVE) / PER_OCTAVE)
+
+def resample(coefficient: DragCoefficient) -> tuple[Array, Array]:
+    """Reynolds numbers (k,) and C_D (k,); constant beyond the file's ends."""
+    last = max(math.ceil(math.log2(coefficient.reynolds[-1])), FIRST_OCTAVE + 1)
+    steps = np.arange((last - FIRST_OCTAVE) * PER_OCTAVE + 1)
+    nodes = 2.0 ** (FIRST_OCTAVE + steps // PER_OCTAVE)
+    nodes = nodes * (1.0 + (steps % PER_OCTAVE) / PER_OCTAVE)
     values = np.interp(np.log(nodes), np.log(coefficient.reynolds), coefficient.cd)
-    return first, nodes, values
+    return nodes, values

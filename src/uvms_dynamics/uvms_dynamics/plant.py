@@ -11,6 +11,7 @@ from uvms_dynamics.integrator import (
     advance,
     make_scratch,
 )
+from uvms_dynamics.kernels.layout import EFFORT
 from uvms_dynamics.model import build_model
 from uvms_dynamics.plant_config import PlantConfig, check_step, initial_joints, steps_in
 from uvms_dynamics.plant_truth import PlantTruth, true_disturbance, true_joints, true_odometry
@@ -91,7 +92,7 @@ class Plant:
         """
         thrust = _checked(thruster.thrust, self._vehicle.thruster_names, "thruster_command", "N")
         effort = _checked(joints.effort, self._vehicle.joint_names, "joint_command", "N m")
-        limit = self._system.model.effort_limit
+        limit = self._system.model.joints[1:, EFFORT]
         self._effort = np.clip(effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
         self._integrate(thrust, self._states, self._rates)

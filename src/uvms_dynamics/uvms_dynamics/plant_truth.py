@@ -8,7 +8,7 @@ from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.kernels import coupling_wrench, restoring_wrench
 from uvms_dynamics.kernels.hull import hull_hydrodynamic_wrench
 from uvms_dynamics.model import Model
-from uvms_dynamics.rotations import quat_to_matrix
+from uvms_dynamics.rotations import quat_to_matrix, skew
 from uvms_dynamics.signals import Array, DisturbanceBudget, JointStates, Odometry
 
 
@@ -47,7 +47,7 @@ def true_disturbance(
     that of still water at the same motion over ground,
     W(nu_r, nu_r_dot) - W(nu, nu_dot), W = -(M_A nu_dot + C_A nu + D nu).
     """
-    n = model.rotor_inertia.shape[0]
+    n = model.joints.shape[0] - 1
     quat, nu_r, nu_r_dot = state[QUATERNION:VELOCITY], state[VELOCITY:JOINTS], rate[VELOCITY:JOINTS]
     q, q_dot = state[JOINTS : JOINTS + n], state[JOINTS + n : JOINTS + 2 * n]
     q_ddot = rate[JOINTS + n : JOINTS + 2 * n]
@@ -67,6 +67,6 @@ def _current_on_hull(
     drift = quat_to_matrix(quat).T @ current
     nu, nu_dot = nu_r.copy(), nu_r_dot.copy()
     nu[:3] += drift
-    nu_dot[:3] -= np.cross(nu_r[3:], drift)
+    nu_dot[:3] -= skew(nu_r[3:]) @ drift
     moving = hull_hydrodynamic_wrench(model, nu_r, nu_r_dot)
     return moving - hull_hydrodynamic_wrench(model, nu, nu_dot)

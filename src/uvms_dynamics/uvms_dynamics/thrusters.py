@@ -37,8 +37,7 @@ def build_thrusters(vehicle: Vehicle) -> Thrusters:
 
 
 @inner
-def thrust_rate(thrusters, i, thrust, command):
+def thrust_rate(limit, time_constant, slew, i, thrust, command):
     """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
-    limit, slew = thrusters.limit[i], thrusters.slew_limit[i]
-    wanted = min(max(command, -limit), limit)
-    return min(max((wanted - thrust) / thrusters.time_constant[i], -slew), slew)
+    wanted = min(max(command, -limit[i]), limit[i])
+    return min(max((wanted - thrust) / time_constant[i], -slew[i]), slew[i])

@@ -1,74 +1,71 @@
 """Where the arm's frames and the tool are: poses, Jacobian, weight and buoyancy."""
 
+import math
+
 import numpy as np
-from numba import njit
 
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.spatial import cross, turn_about_z
+from uvms_dynamics.kernels.layout import (
+    NET_MOMENT,
+    NET_WEIGHT,
+    OFFSET,
+    TOOL_POSITION,
+    TREE_POSITION,
+    TREE_ROTATION,
+)
+from uvms_dynamics.kernels.motion import down_in_body
+from uvms_dynamics.kernels.spatial import cross, load3
 from uvms_dynamics.rotations import quat_to_matrix
 
-_inlined = njit(cache=True, error_model="numpy", forceinline=True)  # `inner` that may allocate
+# A frame in the body frame is a row of twelve: its rotation row by row, then its origin.
+_ORIGIN = 9
+_FRAME_COLUMNS = 12
 
 
 @inner
-def down_in_body(quat):
-    """World's down (0, 0, 1) in the body frame: the last row of R_world_body."""
-    x, y, z, w = quat[0], quat[1], quat[2], quat[3]
-    return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)
+def joint_frames(joints, q, frames):
+    """Set rows 1..n of frames (n+1, 12) to the joint frames in the body frame; row 0: itself."""
+    for k in range(_FRAME_COLUMNS):
+        frames[0, k] = 1.0 if k in (0, 4, 8) else 0.0
+    for i in range(1, q.shape[0] + 1):
+        p0, p1, p2 = load3(joints, i, TREE_POSITION)
+        x0, x1, x2 = _apply(frames, i - 1, p0, p1, p2)
+        frames[i, _ORIGIN] = frames[i - 1, _ORIGIN] + x0
+        frames[i, _ORIGIN + 1] = frames[i - 1, _ORIGIN + 1] + x1
+        frames[i, _ORIGIN + 2] = frames[i - 1, _ORIGIN + 2] + x2
+        angle = q[i - 1] + joints[i, OFFSET]
+        c, s = math.cos(angle), math.sin(angle)
+        _set_axes(joints, frames, i, c, s)
 
 
 @inner
-def joint_rotations(model, q, rotation):
-    """Set rotation[i] (3, 3) of each joint frame to its parent; q (n,) rad."""
-    for i in range(q.shape[0]):
-        turn_about_z(model.tree_rotation, i, q[i] + model.joint_offset[i], rotation)
-
-
-@_inlined
-def joint_frames(model, q):
-    """Origins (n, 3) and rotations (n, 3, 3) of the joint frames in the body frame."""
-    n = q.shape[0]
-    local = np.empty((n, 3, 3))
-    joint_rotations(model, q, local)
-    origin, rotation = np.empty((n, 3)), np.empty((n, 3, 3))
-    for i in range(n):
-        if i == 0:
-            origin[0, :], rotation[0, :, :] = model.tree_position[0], local[0]
-        else:
-            _place(origin, rotation, i, model.tree_position[i], local[i])
-    return origin, rotation
+def _set_axes(joints, frames, i, c, s):
+    """Rotation of frame i: its parent's, the joint's fixed rotation, then Rz."""
+    t = TREE_ROTATION
+    x0, x1, x2 = _apply(frames, i - 1, joints[i, t], joints[i, t + 3], joints[i, t + 6])
+    y0, y1, y2 = _apply(frames, i - 1, joints[i, t + 1], joints[i, t + 4], joints[i, t + 7])
+    z0, z1, z2 = _apply(frames, i - 1, joints[i, t + 2], joints[i, t + 5], joints[i, t + 8])
+    frames[i, 0], frames[i, 1], frames[i, 2] = x0 * c + y0 * s, y0 * c - x0 * s, z0
+    frames[i, 3], frames[i, 4], frames[i, 5] = x1 * c + y1 * s, y1 * c - x1 * s, z1
+    frames[i, 6], frames[i, 7], frames[i, 8] = x2 * c + y2 * s, y2 * c - x2 * s, z2
 
 
 @inner
-def _place(origin, rotation, i, position, turned):
-    """Frame i from frame i - 1 and its pose in it."""
-    for row in range(3):
-        total = origin[i - 1, row]
-        for k in range(3):
-            total += rotation[i - 1, row, k] * position[k]
-        origin[i, row] = total
-        for column in range(3):
-            total = 0.0
-            for k in range(3):
-                total += rotation[i - 1, row, k] * turned[k, column]
-            rotation[i, row, column] = total
+def _apply(frames, i, x, y, z):
+    """Components in the body frame of a vector of frame i."""
+    return (
+        frames[i, 0] * x + frames[i, 1] * y + frames[i, 2] * z,
+        frames[i, 3] * x + frames[i, 4] * y + frames[i, 5] * z,
+        frames[i, 6] * x + frames[i, 7] * y + frames[i, 8] * z,
+    )
 
 
-@_inlined
-def tool_in_body(model, origin, rotation):
-    """Tool position (3,) and rotation (3, 3) in the body frame, from the joint frames."""
-    last = origin.shape[0] - 1
-    place, turned = np.empty(3), np.empty((3, 3))
-    for row in range(3):
-        place[row] = origin[last, row]
-        for k in range(3):
-            place[row] += rotation[last, row, k] * model.tool_position[k]
-        for column in range(3):
-            total = 0.0
-            for k in range(3):
-                total += rotation[last, row, k] * model.tool_rotation[k, column]
-            turned[row, column] = total
-    return place, turned
+@inner
+def _tool_position(tool, frames, n):
+    """Tool in the body frame."""
+    p0, p1, p2 = load3(tool, TOOL_POSITION, 0)
+    x0, x1, x2 = _apply(frames, n, p0, p1, p2)
+    return frames[n, _ORIGIN] + x0, frames[n, _ORIGIN + 1] + x1, frames[n, _ORIGIN + 2] + x2
 
 
 @kernel
@@ -77,20 +74,19 @@ def end_effector(model, position, quat, q):
 
     position (3,) m and quat (4,) are the vehicle's pose in the world, q (n,) rad.
     """
-    origin, rotation = joint_frames(model, q)
-    place, turned = tool_in_body(model, origin, rotation)
-    body = quat_to_matrix(quat)
-    p, out = np.empty(3), np.empty((3, 3))
+    n = q.shape[0]
+    frames = np.empty((n + 1, _FRAME_COLUMNS))
+    joint_frames(model.joints, q, frames)
+    body, tool = quat_to_matrix(quat), model.tool
+    x, y, z = _tool_position(tool, frames, n)
+    place, turned = np.empty(3), np.empty((3, 3))
     for row in range(3):
-        p[row] = position[row]
-        for k in range(3):
-            p[row] += body[row, k] * place[k]
+        b0, b1, b2 = body[row, 0], body[row, 1], body[row, 2]
+        place[row] = position[row] + b0 * x + b1 * y + b2 * z
         for column in range(3):
-            total = 0.0
-            for k in range(3):
-                total += body[row, k] * turned[k, column]
-            out[row, column] = total
-    return p, out
+            t0, t1, t2 = _apply(frames, n, tool[0, column], tool[1, column], tool[2, column])
+            turned[row, column] = b0 * t0 + b1 * t1 + b2 * t2
+    return place, turned
 
 
 @kernel
@@ -100,21 +96,22 @@ def end_effector_jacobian(model, quat, q):
     Eq. (12), corrected from the print: columns [z x (r_tool - r_joint); z] of the joints.
     """
     n = q.shape[0]
-    origin, rotation = joint_frames(model, q)
-    tool, _ = tool_in_body(model, origin, rotation)
+    frames = np.empty((n + 1, _FRAME_COLUMNS))
+    joint_frames(model.joints, q, frames)
     body = quat_to_matrix(quat)
+    x, y, z = _tool_position(model.tool, frames, n)
     jacobian = np.zeros((6, 6 + n))
     unit = np.eye(3)
     for k in range(3):
-        a0, a1, a2 = unit[k, 0], unit[k, 1], unit[k, 2]
+        a0, a1, a2 = load3(unit, k, 0)
         _column(jacobian, k, body, a0, a1, a2, 0.0, 0.0, 0.0)
-        l0, l1, l2 = cross(a0, a1, a2, tool[0], tool[1], tool[2])
+        l0, l1, l2 = cross(a0, a1, a2, x, y, z)
         _column(jacobian, 3 + k, body, l0, l1, l2, a0, a1, a2)
-    for i in range(n):
-        z0, z1, z2 = rotation[i, 0, 2], rotation[i, 1, 2], rotation[i, 2, 2]
-        x, y, z = tool[0] - origin[i, 0], tool[1] - origin[i, 1], tool[2] - origin[i, 2]
-        l0, l1, l2 = cross(z0, z1, z2, x, y, z)
-        _column(jacobian, 6 + i, body, l0, l1, l2, z0, z1, z2)
+    for i in range(1, n + 1):
+        z0, z1, z2 = frames[i, 2], frames[i, 5], frames[i, 8]
+        o0, o1, o2 = load3(frames, i, _ORIGIN)
+        l0, l1, l2 = cross(z0, z1, z2, x - o0, y - o1, z - o2)
+        _column(jacobian, 5 + i, body, l0, l1, l2, z0, z1, z2)
     return jacobian
 
 
@@ -133,31 +130,20 @@ def restoring_wrench(model, quat, q):
     Eq. (13), with the sign of buoyancy and the names of CB and CG corrected from the print:
     f = sum (m g - rho V g) k, n = P x k, P = sum m g r_g - rho V g r_b, k the down direction.
     """
-    k0, k1, k2 = down_in_body(quat)
-    origin, rotation = joint_frames(model, q)
-    total, p0, p1, p2 = _first_moment(model, origin, rotation)
+    n = q.shape[0]
+    bodies, frames = model.bodies, np.empty((n + 1, _FRAME_COLUMNS))
+    joint_frames(model.joints, q, frames)
+    total, p0, p1, p2 = 0.0, 0.0, 0.0, 0.0
+    for i in range(n + 1):
+        w = bodies[i, NET_WEIGHT]
+        m0, m1, m2 = load3(bodies, i, NET_MOMENT)
+        m0, m1, m2 = _apply(frames, i, m0, m1, m2)
+        total += w
+        p0 += w * frames[i, _ORIGIN] + m0
+        p1 += w * frames[i, _ORIGIN + 1] + m1
+        p2 += w * frames[i, _ORIGIN + 2] + m2
+    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
     out = np.empty(6)
     out[0], out[1], out[2] = total * k0, total * k1, total * k2
     out[3], out[4], out[5] = cross(p0, p1, p2, k0, k1, k2)
     return out
-
-
-@inner
-def _first_moment(model, origin, rotation):
-    """Wet weight and its first moment P in the body frame."""
-    total = model.net_weight[0]
-    moment = model.net_moment
-    p0, p1, p2 = moment[0, 0], moment[0, 1], moment[0, 2]
-    for i in range(origin.shape[0]):
-        w = model.net_weight[i + 1]
-        m0, m1, m2 = moment[i + 1, 0], moment[i + 1, 1], moment[i + 1, 2]
-        total += w
-        p0 += w * origin[i, 0] + _dot(rotation, i, 0, m0, m1, m2)
-        p1 += w * origin[i, 1] + _dot(rotation, i, 1, m0, m1, m2)
-        p2 += w * origin[i, 2] + _dot(rotation, i, 2, m0, m1, m2)
-    return total, p0, p1, p2
-
-
-@inner
-def _dot(rotation, i, row, x, y, z):
-    return rotation[i, row, 0] * x + rotation[i, row, 1] * y + rotation[i, row, 2] * z

@@ -2,24 +2,38 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.chain import down_in_body, joint_rotations
-from uvms_dynamics.kernels.drag import link_drag
-from uvms_dynamics.kernels.hull import hull_bias
-from uvms_dynamics.kernels.inertia import add_to_parent
+from uvms_dynamics.kernels.hull import damping
+from uvms_dynamics.kernels.inertia import add_to_parent, copy_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.layout import (
+    ACCELERATION,
+    AXIS_FORCE,
+    DOWN,
+    FORCE,
+    INVERSE,
+    REST,
+    ROTOR,
+    VELOCITY,
+)
+from uvms_dynamics.kernels.motion import (
+    bias_force,
+    carry_down,
+    carry_velocity,
+    down_in_body,
+    make_workspace,
+    resist,
+)
 from uvms_dynamics.kernels.solve import solve_symmetric
 from uvms_dynamics.kernels.spatial import (
-    accumulate,
+    add,
     force_to_parent,
-    gyroscopic,
     load,
     motion_to_child,
+    set_rotation,
     store,
+    store3,
     times,
-    turn_back,
-    weight,
 )
-from uvms_dynamics.kernels.workspace import make_workspace
 
 
 @kernel
@@ -31,7 +45,8 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
     """
     out = np.empty(6 + q.shape[0])
-    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, make_workspace(q.shape[0]), out)
+    work = make_workspace(q.shape[0])
+    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out)
     return out
 
 
@@ -39,116 +54,91 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
 def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
     n = q.shape[0]
-    joint_rotations(model, q, work.rotation)
-    _start_at_hull(model, quat, nu_r, tau, work)
-    for i in range(1, n + 1):
-        _outward_velocity(model, i, q_dot[i - 1], work)
-    for i in range(n, 0, -1):
-        _inward_inertia(model, i, tau[5 + i], work)
+    bodies, joints = model.bodies, model.joints
+    strips, start, coefficient = model.strips, model.strip_start, model.drag_coefficient
+    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    store3(work, 0, DOWN, k0, k1, k2)
+    store(work, 0, VELOCITY, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
+    bias_force(bodies, work, 0)
+    _hull_forces(model.hull, tau, work)
+    copy_inertia(bodies, work, 0)
+    for i in range(1, n + 1):  # outward: velocities and bias forces
+        set_rotation(joints, work, i, q[i - 1])
+        carry_down(work, i)
+        x0, x1, y0, y1 = carry_velocity(joints, work, i, q_dot[i - 1])
+        store(work, i, ACCELERATION, x0, x1, 0.0, y0, y1, 0.0)
+        bias_force(bodies, work, i)
+        resist(strips, start, coefficient, work, i)
+        copy_inertia(bodies, work, i)
+    for i in range(n, 0, -1):  # inward: articulated inertias and bias forces
+        _release_joint(work, i, tau[5 + i], joints[i, ROTOR])
+        _hand_bias_on(joints, work, i)
+        add_to_parent(joints, work, i)
     _hull_acceleration(work, out)
-    for i in range(1, n + 1):
-        out[5 + i] = _outward_acceleration(model, i, work)
+    for i in range(1, n + 1):  # outward: accelerations
+        out[5 + i] = _joint_acceleration(joints, work, i)
 
 
 @inner
-def _start_at_hull(model, quat, nu_r, tau, work):
-    """Velocity, inertia and bias force of the hull under the body wrench."""
-    k0, k1, k2 = down_in_body(quat)
-    work.down[0, 0], work.down[0, 1], work.down[0, 2] = k0, k1, k2
-    v0, v1, v2, w0, w1, w2 = nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
-    store(work.velocity, 0, v0, v1, v2, w0, w1, w2)
-    f0, f1, f2, n0, n1, n2 = hull_bias(model, v0, v1, v2, w0, w1, w2)
-    store(
-        work.force, 0, f0 - tau[0], f1 - tau[1], f2 - tau[2], n0 - tau[3], n1 - tau[4], n2 - tau[5]
-    )
-    f0, f1, f2, n0, n1, n2 = weight(model, 0, k0, k1, k2)
-    accumulate(work.force, 0, -f0, -f1, -f2, -n0, -n1, -n2)
-    _copy_inertia(model, 0, work)
-
-
-@inner
-def _copy_inertia(model, i, work):
-    for row in range(6):
-        for column in range(6):
-            work.inertia[i, row, column] = model.inertia[i, row, column]
-
-
-@inner
-def _outward_velocity(model, i, rate, work):
-    """Velocity, velocity product, inertia and bias force of link i."""
-    v0, v1, v2, w0, w1, w2 = load(work.velocity, i - 1)
-    v0, v1, v2, w0, w1, w2 = motion_to_child(
-        work.rotation, model.tree_position, i - 1, v0, v1, v2, w0, w1, w2
-    )
-    # velocity product V x S q_dot: only its first two linear and angular parts are not zero
-    store(work.acceleration, i, rate * v1, -rate * v0, 0.0, rate * w1, -rate * w0, 0.0)
-    w2 += rate
-    store(work.velocity, i, v0, v1, v2, w0, w1, w2)
-    k0, k1, k2 = work.down[i - 1, 0], work.down[i - 1, 1], work.down[i - 1, 2]
-    k0, k1, k2 = turn_back(work.rotation, i - 1, k0, k1, k2)
-    work.down[i, 0], work.down[i, 1], work.down[i, 2] = k0, k1, k2
-    f0, f1, f2, n0, n1, n2 = gyroscopic(model.inertia, i, v0, v1, v2, w0, w1, w2)
-    store(work.force, i, f0, f1, f2, n0, n1, n2)
-    f0, f1, f2, n0, n1, n2 = link_drag(model, i, v0, v1, v2, w0, w1, w2)
-    accumulate(work.force, i, -f0, -f1, -f2, -n0, -n1, -n2)
-    f0, f1, f2, n0, n1, n2 = weight(model, i, k0, k1, k2)
-    accumulate(work.force, i, -f0, -f1, -f2, -n0, -n1, -n2)
-    _copy_inertia(model, i, work)
-
-
-@inner
-def _inward_inertia(model, i, torque, work):
-    """Articulated inertia and bias force of link i, handed to its parent.
-
-    U = I S, D = S^T U + rotor, u = tau - S^T p; I - U U^T / D and p + I c + U u / D go inward.
-    The joint's motion S is a turn about z, so U is the last column of I.
-    """
-    table, joint = work.inertia, work.joint
+def _hull_forces(hull, tau, work):
+    """Damping of the hull less the body wrench, added to its bias force."""
     for k in range(6):
-        joint[i - 1, k] = table[i, k, 5]
-    inverse = 1.0 / (table[i, 5, 5] + model.rotor_inertia[i - 1])
-    rest = torque - work.force[i, 5]
-    joint[i - 1, 6], joint[i - 1, 7] = inverse, rest
+        work[0, FORCE + k] += damping(hull, k, work[0, VELOCITY + k]) - tau[k]
+
+
+@inner
+def _release_joint(work, i, torque, rotor):
+    """Articulated inertia of link i, free about its joint: I - U U^T / D.
+
+    U = I S, D = S^T U + rotor, u = tau - S^T p. The joint's motion S is a turn about z, so U is
+    the last column of I.
+    """
+    u0, u1, u2, u3, u4, u5 = load(work, i, 30)  # last row: the matrix is symmetric
+    inverse = 1.0 / (u5 + rotor)
+    store(work, i, AXIS_FORCE, u0, u1, u2, u3, u4, u5)
+    work[i, INVERSE] = inverse
+    work[i, REST] = torque - work[i, FORCE + 5]
     for row in range(6):
-        scaled = joint[i - 1, row] * inverse
-        for column in range(6):
-            table[i, row, column] -= scaled * joint[i - 1, column]
-    c0, c1, c2, d0, d1, d2 = load(work.acceleration, i)
-    f0, f1, f2, n0, n1, n2 = times(table, i, c0, c1, c2, d0, d1, d2)
-    accumulate(work.force, i, f0, f1, f2, n0, n1, n2)
-    gain = rest * inverse
-    u0, u1, u2, u3, u4, u5 = load(joint, i - 1)
-    f0, f1, f2, n0, n1, n2 = load(work.force, i)
-    f0, f1, f2, n0, n1, n2 = force_to_parent(
-        work.rotation, model.tree_position, i - 1,
-        f0 + gain * u0, f1 + gain * u1, f2 + gain * u2,
-        n0 + gain * u3, n1 + gain * u4, n2 + gain * u5,
-    )  # fmt: skip
-    accumulate(work.force, i - 1, f0, f1, f2, n0, n1, n2)
-    add_to_parent(table, i, work.rotation, model.tree_position, i - 1)
+        scaled = -inverse * work[i, AXIS_FORCE + row]
+        add(
+            work, i, 6 * row,
+            scaled * u0, scaled * u1, scaled * u2, scaled * u3, scaled * u4, scaled * u5,
+        )  # fmt: skip
+
+
+@inner
+def _hand_bias_on(joints, work, i):
+    """Bias force p + I c + U u / D of link i, added to its parent's."""
+    c0, c1, c2, d0, d1, d2 = load(work, i, ACCELERATION)
+    f0, f1, f2, n0, n1, n2 = times(work, i, c0, c1, c2, d0, d1, d2)
+    add(work, i, FORCE, f0, f1, f2, n0, n1, n2)
+    gain = work[i, REST] * work[i, INVERSE]
+    u0, u1, u2, u3, u4, u5 = load(work, i, AXIS_FORCE)
+    add(work, i, FORCE, gain * u0, gain * u1, gain * u2, gain * u3, gain * u4, gain * u5)
+    f0, f1, f2, n0, n1, n2 = load(work, i, FORCE)
+    f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2)
+    add(work, i - 1, FORCE, f0, f1, f2, n0, n1, n2)
 
 
 @inner
 def _hull_acceleration(work, out):
     """Solve the articulated inertia of the hull for its acceleration."""
     for k in range(6):
-        out[k] = -work.force[0, k]
-    solve_symmetric(work.inertia, out)
+        out[k] = -work[0, FORCE + k]
+    solve_symmetric(work, out)
     for k in range(6):
-        work.acceleration[0, k] = out[k]
+        work[0, ACCELERATION + k] = out[k]
 
 
 @inner
-def _outward_acceleration(model, i, work):
-    """Acceleration of link i; returns the joint's own."""
-    a0, a1, a2, b0, b1, b2 = load(work.acceleration, i - 1)
-    a0, a1, a2, b0, b1, b2 = motion_to_child(
-        work.rotation, model.tree_position, i - 1, a0, a1, a2, b0, b1, b2
-    )
-    accumulate(work.acceleration, i, a0, a1, a2, b0, b1, b2)
-    a0, a1, a2, b0, b1, b2 = load(work.acceleration, i)
-    u0, u1, u2, u3, u4, u5 = load(work.joint, i - 1)
+def _joint_acceleration(joints, work, i):
+    """Acceleration of link i from its parent's; returns the joint's own."""
+    a0, a1, a2, b0, b1, b2 = load(work, i - 1, ACCELERATION)
+    a0, a1, a2, b0, b1, b2 = motion_to_child(joints, work, i, a0, a1, a2, b0, b1, b2)
+    add(work, i, ACCELERATION, a0, a1, a2, b0, b1, b2)
+    a0, a1, a2, b0, b1, b2 = load(work, i, ACCELERATION)
+    u0, u1, u2, u3, u4, u5 = load(work, i, AXIS_FORCE)
     needed = u0 * a0 + u1 * a1 + u2 * a2 + u3 * b0 + u4 * b1 + u5 * b2
-    result = (work.joint[i - 1, 7] - needed) * work.joint[i - 1, 6]
-    work.acceleration[i, 5] = b2 + result
+    result = (work[i, REST] - needed) * work[i, INVERSE]
+    work[i, ACCELERATION + 5] = b2 + result
     return result

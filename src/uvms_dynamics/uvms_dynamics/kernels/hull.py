@@ -1,11 +1,12 @@
-"""Forces on the hull that depend on its velocity through the water."""
+"""Forces on the hull that depend on its motion through the water."""
 
 import math
 
 import numpy as np
 
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.spatial import gyroscopic, times
+from uvms_dynamics.kernels.layout import ADDED_MASS, LINEAR, QUADRATIC
+from uvms_dynamics.kernels.spatial import gyroscopic
 
 
 @kernel
@@ -15,43 +16,29 @@ def hull_bias_wrench(model, nu_r):
     nu_r (6,) is the velocity relative to the water, body frame. Section 2.2 of the paper.
     """
     out = np.empty(6)
-    out[0], out[1], out[2], out[3], out[4], out[5] = hull_bias(
-        model, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
-    )
+    u, v, w, p, q, r = nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
+    out[0], out[1], out[2], out[3], out[4], out[5] = gyroscopic(model.bodies, 0, u, v, w, p, q, r)
+    for k in range(6):
+        out[k] += damping(model.hull, k, nu_r[k])
     return out
-
-
-@inner
-def hull_bias(model, u, v, w, p, q, r):
-    """The same in scalars."""
-    f0, f1, f2, n0, n1, n2 = gyroscopic(model.inertia, 0, u, v, w, p, q, r)
-    return (
-        f0 + damping(model, 0, u),
-        f1 + damping(model, 1, v),
-        f2 + damping(model, 2, w),
-        n0 + damping(model, 3, p),
-        n1 + damping(model, 4, q),
-        n2 + damping(model, 5, r),
-    )
-
-
-@inner
-def damping(model, k, x):
-    """Linear and quadratic damping of one degree of freedom: (d_k + d_kk |x|) x."""
-    return (model.linear_damping[k] + model.quadratic_damping[k] * math.fabs(x)) * x
 
 
 @kernel
 def hull_hydrodynamic_wrench(model, nu_r, nu_r_dot):
     """What the water does TO the hull (6,): -(M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r)."""
-    v0, v1, v2, w0, w1, w2 = nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
-    f0, f1, f2, n0, n1, n2 = gyroscopic(model.added_mass, 0, v0, v1, v2, w0, w1, w2)
-    a0, a1, a2 = nu_r_dot[0], nu_r_dot[1], nu_r_dot[2]
-    b0, b1, b2 = nu_r_dot[3], nu_r_dot[4], nu_r_dot[5]
-    g0, g1, g2, m0, m1, m2 = times(model.added_mass, 0, a0, a1, a2, b0, b1, b2)
+    matrix = model.hull[ADDED_MASS:].copy().reshape(1, 36)
+    u, v, w, p, q, r = nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
     out = np.empty(6)
-    out[0], out[1], out[2] = -f0 - g0, -f1 - g1, -f2 - g2
-    out[3], out[4], out[5] = -n0 - m0, -n1 - m1, -n2 - m2
+    out[0], out[1], out[2], out[3], out[4], out[5] = gyroscopic(matrix, 0, u, v, w, p, q, r)
     for k in range(6):
-        out[k] -= damping(model, k, nu_r[k])
+        total = out[k] + damping(model.hull, k, nu_r[k])
+        for j in range(6):
+            total += matrix[0, 6 * k + j] * nu_r_dot[j]
+        out[k] = -total
     return out
+
+
+@inner
+def damping(hull, k, x):
+    """Linear and quadratic damping of one degree of freedom: (d_k + d_kk |x|) x."""
+    return (hull[LINEAR, k] + hull[QUADRATIC, k] * math.fabs(x)) * x

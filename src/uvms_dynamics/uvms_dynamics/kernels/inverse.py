@@ -2,22 +2,27 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.chain import down_in_body, joint_rotations
-from uvms_dynamics.kernels.drag import link_drag
-from uvms_dynamics.kernels.hull import hull_bias
+from uvms_dynamics.kernels.hull import damping
 from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.layout import ACCELERATION, DOWN, FORCE, ROTOR, VELOCITY
+from uvms_dynamics.kernels.motion import (
+    bias_force,
+    carry_down,
+    carry_velocity,
+    down_in_body,
+    make_workspace,
+    resist,
+)
 from uvms_dynamics.kernels.spatial import (
-    accumulate,
+    add,
     force_to_parent,
-    gyroscopic,
     load,
     motion_to_child,
+    set_rotation,
     store,
+    store3,
     times,
-    turn_back,
-    weight,
 )
-from uvms_dynamics.kernels.workspace import make_workspace
 
 
 @kernel
@@ -30,14 +35,17 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """
     n = q.shape[0]
     work = make_workspace(n)
-    work.down[0, 0], work.down[0, 1], work.down[0, 2] = down_in_body(quat)
+    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    store3(work, 0, DOWN, k0, k1, k2)
+    forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
+    bias_force(model.bodies, work, 0)
+    _inertia_force(model.bodies, work, 0)
+    _carry_inward(model.joints, work, n)
     out = np.empty(6 + n)
-    forces_on_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
-    for i in range(n):
-        out[6 + i] = work.force[i + 1, 5] + model.rotor_inertia[i] * q_ddot[i]
-    _add_hull(model, nu_r, nu_r_dot, work)
+    for i in range(1, n + 1):
+        out[5 + i] = work[i, FORCE + 5] + model.joints[i, ROTOR] * q_ddot[i - 1]
     for k in range(6):
-        out[k] = work.force[0, k]
+        out[k] = work[0, FORCE + k] + damping(model.hull, k, nu_r[k])
     return out
 
 
@@ -49,84 +57,50 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     counts. Eq. (14)-(15) with omega x (I omega), corrected from the print. Arguments as in
     `inverse_dynamics`; body frame.
     """
-    work = make_workspace(q.shape[0])
-    work.down[0, 0] = work.down[0, 1] = work.down[0, 2] = 0.0
-    forces_on_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
+    n = q.shape[0]
+    work = make_workspace(n)
+    store3(work, 0, DOWN, 0.0, 0.0, 0.0)  # no down, no weight
+    forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
+    store(work, 0, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    _carry_inward(model.joints, work, n)
     out = np.empty(6)
     for k in range(6):
-        out[k] = -work.force[0, k]
+        out[k] = -work[0, FORCE + k]
     return out
 
 
-@kernel
-def forces_on_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work):
-    """Outward motions, inward forces: work.force[i] through joint i, row 0 at the hull.
-
-    work.down[0] gives the down direction in the body frame (zero leaves weight out).
-    """
-    n = q.shape[0]
-    joint_rotations(model, q, work.rotation)
+@inner
+def forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work):
+    """Motion of each link and the force that it needs for it, I a + C v - drag - weight."""
+    bodies, joints = model.bodies, model.joints
     for k in range(6):
-        work.velocity[0, k] = nu_r[k]
-        work.acceleration[0, k] = nu_r_dot[k]
-        work.force[0, k] = 0.0
-    for i in range(1, n + 1):
-        _move_link(model, i, q_dot[i - 1], q_ddot[i - 1], work)
-        _load_link(model, i, work)
+        work[0, VELOCITY + k] = nu_r[k]
+        work[0, ACCELERATION + k] = nu_r_dot[k]
+    for i in range(1, q.shape[0] + 1):
+        set_rotation(joints, work, i, q[i - 1])
+        carry_down(work, i)
+        x0, x1, y0, y1 = carry_velocity(joints, work, i, q_dot[i - 1])
+        a0, a1, a2, b0, b1, b2 = load(work, i - 1, ACCELERATION)
+        a0, a1, a2, b0, b1, b2 = motion_to_child(joints, work, i, a0, a1, a2, b0, b1, b2)
+        b2 += q_ddot[i - 1]
+        store(work, i, ACCELERATION, a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2)
+        bias_force(bodies, work, i)
+        _inertia_force(bodies, work, i)
+        resist(model.strips, model.strip_start, model.drag_coefficient, work, i)
+
+
+@inner
+def _inertia_force(bodies, work, i):
+    """Add I a of body i to its force."""
+    a0, a1, a2, b0, b1, b2 = load(work, i, ACCELERATION)
+    f0, f1, f2, n0, n1, n2 = times(bodies, i, a0, a1, a2, b0, b1, b2)
+    add(work, i, FORCE, f0, f1, f2, n0, n1, n2)
+
+
+@inner
+def _carry_inward(joints, work, n):
+    """Sum the forces from the tip to the hull, eq. (14)-(15); row i: through joint i."""
     for i in range(n, 0, -1):
-        f0, f1, f2, n0, n1, n2 = load(work.force, i)
-        f0, f1, f2, n0, n1, n2 = force_to_parent(
-            work.rotation, model.tree_position, i - 1, f0, f1, f2, n0, n1, n2
-        )
-        accumulate(work.force, i - 1, f0, f1, f2, n0, n1, n2)
-
-
-@inner
-def _move_link(model, i, rate, acceleration, work):
-    """Velocity, acceleration and down direction of link i from those of its parent, eq. (2)-(7)."""
-    frame, position = i - 1, model.tree_position
-    v0, v1, v2, w0, w1, w2 = load(work.velocity, i - 1)
-    v0, v1, v2, w0, w1, w2 = motion_to_child(work.rotation, position, frame, v0, v1, v2, w0, w1, w2)
-    a0, a1, a2, b0, b1, b2 = load(work.acceleration, i - 1)
-    a0, a1, a2, b0, b1, b2 = motion_to_child(work.rotation, position, frame, a0, a1, a2, b0, b1, b2)
-    a0, a1, b0, b1 = a0 + rate * v1, a1 - rate * v0, b0 + rate * w1, b1 - rate * w0
-    store(work.velocity, i, v0, v1, v2, w0, w1, w2 + rate)
-    store(work.acceleration, i, a0, a1, a2, b0, b1, b2 + acceleration)
-    k0, k1, k2 = work.down[i - 1, 0], work.down[i - 1, 1], work.down[i - 1, 2]
-    k0, k1, k2 = turn_back(work.rotation, frame, k0, k1, k2)
-    work.down[i, 0], work.down[i, 1], work.down[i, 2] = k0, k1, k2
-
-
-@inner
-def _load_link(model, i, work):
-    """Force that link i needs for its own motion: I a + C v - drag - weight, eq. (14)."""
-    v0, v1, v2, w0, w1, w2 = load(work.velocity, i)
-    a0, a1, a2, b0, b1, b2 = load(work.acceleration, i)
-    f0, f1, f2, n0, n1, n2 = times(model.inertia, i, a0, a1, a2, b0, b1, b2)
-    g0, g1, g2, h0, h1, h2 = gyroscopic(model.inertia, i, v0, v1, v2, w0, w1, w2)
-    d0, d1, d2, e0, e1, e2 = link_drag(model, i, v0, v1, v2, w0, w1, w2)
-    s0, s1, s2, t0, t1, t2 = weight(model, i, work.down[i, 0], work.down[i, 1], work.down[i, 2])
-    store(
-        work.force,
-        i,
-        f0 + g0 - d0 - s0,
-        f1 + g1 - d1 - s1,
-        f2 + g2 - d2 - s2,
-        n0 + h0 - e0 - t0,
-        n1 + h1 - e1 - t1,
-        n2 + h2 - e2 - t2,
-    )
-
-
-@inner
-def _add_hull(model, nu_r, nu_r_dot, work):
-    """Add what the hull itself needs to work.force[0]."""
-    f0, f1, f2, n0, n1, n2 = times(
-        model.inertia, 0, nu_r_dot[0], nu_r_dot[1], nu_r_dot[2],
-        nu_r_dot[3], nu_r_dot[4], nu_r_dot[5],
-    )  # fmt: skip
-    accumulate(work.force, 0, f0, f1, f2, n0, n1, n2)
-    f0, f1, f2, n0, n1, n2 = hull_bias(model, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
-    accumulate(work.force, 0, f0, f1, f2, n0, n1, n2)
-    f0, f1, f2, n0, n1, n2 = weight(model, 0, work.down[0, 0], work.down[0, 1], work.down[0, 2])
-    accumulate(work.force, 0, -f0, -f1, -f2, -n0, -n1, -n2)
+        f0, f1, f2, n0, n1, n2 = load(work, i, FORCE)
+        f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2)
+        add(work, i - 1, FORCE, f0, f1, f2, n0, n1, n2)

@@ -5,6 +5,15 @@ import math
 import numpy as np
 
 from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.layout import (
+    COULOMB,
+    DISSIPATION,
+    LOWER,
+    STIFFNESS,
+    UPPER,
+    VISCOUS,
+    WIDTH,
+)
 
 
 @kernel
@@ -16,24 +25,23 @@ def joint_passive_torque(model, q, q_dot):
     """
     out = np.empty(q.shape[0])
     for i in range(q.shape[0]):
-        out[i] = passive_torque(model, i, q[i], q_dot[i])
+        out[i] = passive_torque(model.joints, i + 1, q[i], q_dot[i])
     return out
 
 
 @inner
-def passive_torque(model, i, angle, rate):
-    """The same of joint i alone."""
-    viscous, coulomb, width = model.friction[i, 0], model.friction[i, 1], model.friction[i, 2]
-    torque = -viscous * rate - coulomb * math.tanh(rate / width)
-    low, high = model.stops[i, 0], model.stops[i, 1]
-    if angle > high:
-        torque -= _stop(model, i, angle - high, rate)
-    elif angle < low:
-        torque += _stop(model, i, low - angle, -rate)
+def passive_torque(joints, i, angle, rate):
+    """The same of the joint in row i."""
+    torque = -joints[i, VISCOUS] * rate - joints[i, COULOMB] * math.tanh(rate / joints[i, WIDTH])
+    over, under = angle - joints[i, UPPER], joints[i, LOWER] - angle
+    if over > 0.0:
+        torque -= _stop(joints, i, over, rate)
+    elif under > 0.0:
+        torque += _stop(joints, i, under, -rate)
     return torque
 
 
 @inner
-def _stop(model, i, depth, speed):
+def _stop(joints, i, depth, speed):
     """Push of an end stop pressed in by depth, rad, at a speed, rad/s."""
-    return max(0.0, model.stops[i, 2] * depth * (1.0 + model.stops[i, 3] * speed))
+    return max(0.0, joints[i, STIFFNESS] * depth * (1.0 + joints[i, DISSIPATION] * speed))

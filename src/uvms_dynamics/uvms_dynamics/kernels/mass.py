@@ -2,10 +2,11 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.chain import joint_rotations
-from uvms_dynamics.kernels.inertia import add_to_parent
+from uvms_dynamics.kernels.inertia import add_to_parent, copy_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.spatial import force_to_parent
+from uvms_dynamics.kernels.layout import ROTOR
+from uvms_dynamics.kernels.motion import make_workspace
+from uvms_dynamics.kernels.spatial import force_to_parent, load, set_rotation
 
 
 @kernel
@@ -16,31 +17,33 @@ def mass_matrix(model, q):
     Composite-rigid-body algorithm (Featherstone 2008, sec. 6.2) with a general symmetric inertia.
     """
     n = q.shape[0]
-    rotation = np.empty((n, 3, 3))
-    joint_rotations(model, q, rotation)
-    composite = model.inertia.copy()
-    matrix = np.empty((6 + n, 6 + n))
+    bodies, joints = model.bodies, model.joints
+    work, matrix = make_workspace(n), np.empty((6 + n, 6 + n))
+    copy_inertia(bodies, work, 0)
+    for i in range(1, n + 1):
+        set_rotation(joints, work, i, q[i - 1])
+        copy_inertia(bodies, work, i)
     for i in range(n, 0, -1):
-        _joint_row(model, i, rotation, composite, matrix)
-        add_to_parent(composite, i, rotation, model.tree_position, i - 1)
+        _joint_row(joints, work, i, matrix)
+        add_to_parent(joints, work, i)
     for row in range(6):
         for column in range(6):
-            matrix[row, column] = composite[0, row, column]
+            matrix[row, column] = work[0, 6 * row + column]
     return matrix
 
 
 @inner
-def _joint_row(model, i, rotation, composite, matrix):
+def _joint_row(joints, work, i, matrix):
     """Row and column of joint i: the force of a unit acceleration, carried to the base."""
-    f0, f1, f2 = composite[i, 0, 5], composite[i, 1, 5], composite[i, 2, 5]
-    n0, n1, n2 = composite[i, 3, 5], composite[i, 4, 5], composite[i, 5, 5]
-    matrix[5 + i, 5 + i] = n2 + model.rotor_inertia[i - 1]
-    for j in range(i - 1, -1, -1):
-        f0, f1, f2, n0, n1, n2 = force_to_parent(
-            rotation, model.tree_position, j, f0, f1, f2, n0, n1, n2
-        )
-        if j > 0:
-            matrix[5 + i, 5 + j] = matrix[5 + j, 5 + i] = n2
-    column = (f0, f1, f2, n0, n1, n2)
-    for k in range(6):
-        matrix[k, 5 + i] = matrix[5 + i, k] = column[k]
+    f0, f1, f2, n0, n1, n2 = load(work, i, 30)
+    matrix[5 + i, 5 + i] = n2 + joints[i, ROTOR]
+    for j in range(i, 0, -1):
+        f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, j, f0, f1, f2, n0, n1, n2)
+        if j > 1:
+            matrix[5 + i, 4 + j] = matrix[4 + j, 5 + i] = n2
+    matrix[0, 5 + i] = matrix[5 + i, 0] = f0
+    matrix[1, 5 + i] = matrix[5 + i, 1] = f1
+    matrix[2, 5 + i] = matrix[5 + i, 2] = f2
+    matrix[3, 5 + i] = matrix[5 + i, 3] = n0
+    matrix[4, 5 + i] = matrix[5 + i, 4] = n1
+    matrix[5, 5 + i] = matrix[5 + i, 5] = n2

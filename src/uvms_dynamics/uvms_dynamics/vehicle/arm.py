@@ -41,7 +41,7 @@ class Joint(Part):
     viscous_friction_nm_s: float = Field(ge=0.0, description="N m per rad/s")
     coulomb_friction_nm: float = Field(ge=0.0, description="sliding friction, N m")
     coulomb_width_deg_s: float = Field(
-        gt=0.0, description="rate w of the regularised friction tanh(rate / w), degrees/s"
+        gt=0.0, description="rate w of the smooth sliding friction tanh(rate / w), degrees/s"
     )
     stop_stiffness_nm_rad: float = Field(ge=0.0, description="of the end stops, N m per rad")
     stop_dissipation_s_rad: float = Field(
