@@ -65,7 +65,7 @@ class NavigationFilter:
                 filter is as it was before; `screen` takes such samples out beforehand.
             NotAlignedError: no IMU sample has come yet.
         """
-        samples = [*imu, *dvl, *pressure, *gps]
+        samples: list[Sample] = [*imu, *dvl, *pressure, *gps]
         good, faults = self.screen(stamp, samples)
         if faults:
             raise faults[0]

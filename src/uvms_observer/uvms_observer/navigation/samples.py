@@ -1,6 +1,7 @@
 """Samples of all sensors, checked and in the order of their stamps."""
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
+from typing import Any
 
 from uvms_dynamics.signals import DvlSample, GpsSample, ImuSample, PressureSample
 from uvms_observer import checks
@@ -48,7 +49,7 @@ def _check_gps(sample: GpsSample) -> None:
     checks.number("gps.altitude", sample.altitude)
 
 
-_CHECKS = {
+_CHECKS: dict[type, Callable[[Any], None]] = {
     ImuSample: _check_imu,
     DvlSample: _check_dvl,
     PressureSample: _check_pressure,
