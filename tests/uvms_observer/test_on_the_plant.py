@@ -24,7 +24,7 @@ def drive(plant):
 
 
 def run(seed):
-    """Truth, odometry, budget and its truth at the end of a run with a start as uncertain as stated."""
+    """Truth, odometry and budgets of a run whose start is as uncertain as configured."""
     config = PlantConfig(initial_position_m=START, initial_rpy_deg=(2.0, -3.0, 40.0))
     plant = Plant(VEHICLE, config, seed)
     offset = 0.01 * np.random.default_rng([seed, 7]).standard_normal(3)
