@@ -12,7 +12,8 @@ PER_OCTAVE = 1 << PER_OCTAVE_BITS
 """Points in each doubling of the Reynolds number; within them C_D is linear in Re.
 
 The top bits of a float64 are its exponent and mantissa, so they are the index of its cell. Against
-the file's table, linear in ln Re, the resampled one is off by less than 0.1 per cent.
+the file's table, linear in ln Re, the resampled one is off by less than 0.1 per cent, and by up to
+3 per cent in a cell that bridges a sharp corner such as the drag crisis.
 """
 
 FIRST_OCTAVE = -10
