@@ -63,7 +63,7 @@ class Session:
     def _record(self, run: Run) -> dict[str, Any]:
         config = yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
-        (self.folder / "vehicle.yaml").write_text(dump_vehicle(self.vehicle), encoding="utf-8")
+        vehicle_file(self.folder, self.vehicle)
         line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
         began = time.perf_counter()
         completed = False
@@ -116,6 +116,13 @@ def prepare(scenario: Scenario, output: str | None, pace: str, command: str) -> 
     except OSError as fault:
         raise RunError(f"--output {folder}: {fault.strerror}") from fault
     return Session(scenario, vehicle, goal, folder.resolve(), pace, command)
+
+
+def vehicle_file(folder: Path, vehicle: Vehicle) -> Path:
+    """Write the vehicle as the nodes of a run read it: with the scenario's overrides."""
+    path = folder / "vehicle.yaml"
+    path.write_text(dump_vehicle(vehicle), encoding="utf-8")
+    return path
 
 
 def git_revision() -> str:

@@ -40,6 +40,8 @@ class Conductor(Node):
         self.statuses: dict[str, Status] = {}
         self.feedback: Any = None
         self.result: Any = None
+        self.result_status: int | None = None  # action_msgs/msg/GoalStatus
+        self.goal_handle: Any = None
         self.create_subscription(
             message_class(topics.DIAGNOSTICS),
             topics.DIAGNOSTICS.name,
@@ -57,6 +59,7 @@ class Conductor(Node):
 
     def lead(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
         """Bring the run to its first tick, send the goal and let time go."""
+        self._recorder.on_clock = spinner.breathe
         self._await_nodes(spinner)
         self._call(spinner, self._start, Trigger.Request(), "plant/start")
         self._await(
@@ -66,7 +69,7 @@ class Conductor(Node):
             lambda: "the loop did not close at the first tick",
         )
         if goal is not None:
-            self._send_goal(spinner, goal)
+            self.send_goal(spinner, goal)
         self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
 
     def arrived(self, end: int) -> bool:
@@ -102,7 +105,8 @@ class Conductor(Node):
             lambda: "; ".join(f"{node}: {lack}" for node, lack in lacks.items() if lack),
         )
 
-    def _send_goal(self, spinner: Spinner, goal: PathGoal | JointGoal) -> None:
+    def send_goal(self, spinner: Spinner, goal: PathGoal | JointGoal) -> None:
+        """Ask the planner for a goal; RunError with its reason where it is rejected."""
         action = next(item for item in topics.ACTIONS if isinstance(goal, item.goal))
         cls = action_class(action)
         self._client = ActionClient(self, cls, action.name)
@@ -120,6 +124,7 @@ class Conductor(Node):
         handle = sent.result()
         if not handle.accepted:
             raise RunError(f"the planner rejected the goal: {self._reason(spinner)}")
+        self.goal_handle = handle
         handle.get_result_async().add_done_callback(self._take_result)
 
     def _reason(self, spinner: Spinner) -> str:
@@ -158,7 +163,7 @@ class Conductor(Node):
         self.feedback = msg.feedback
 
     def _take_result(self, answer: Any) -> None:
-        self.result = answer.result().result
+        self.result, self.result_status = answer.result().result, answer.result().status
 
     def progress(self) -> str:
         """One line on where the run stands."""

@@ -32,6 +32,7 @@ class Recorder:
     def __init__(self, node: Node, write: Write) -> None:
         self._write = write
         self.stamp = 0
+        self.on_clock: Callable[[], None] = lambda: None
         self.newest: dict[str, int] = {}
         for topic in topics.ALL:
             self._subscribe(node, topic)
@@ -45,6 +46,7 @@ class Recorder:
             stamp = stamp_of(data) if stamped else self.stamp
             if topic is topics.CLOCK:
                 self.stamp = stamp
+                self.on_clock()
             self.newest[topic.name] = stamp
             self._write(name, topic.type, qos, stamp, data)
 

@@ -92,11 +92,12 @@ def _separate(
 def _composed(
     parameters: dict[str, dict], folder: Path, values: dict[str, str]
 ) -> Iterator[tuple[list[Node], Callable[[], None]]]:
-    nodes = [_make(node, own) for node, own in parameters.items()]
+    nodes = [make_node(node, own) for node, own in parameters.items()]
     yield nodes, lambda: None
 
 
-def _make(node: str, parameters: dict) -> Node:
+def make_node(node: str, parameters: dict) -> Node:
+    """A node of the graph inside this process, with its parameters."""
     module = import_module(node_module(node))
     name = "".join(part.capitalize() for part in node.split("_")) + "Node"
     overrides = [Parameter(key, value=value) for key, value in parameters.items()]

@@ -1,6 +1,6 @@
 """What the six nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from rclpy.node import Node
@@ -117,9 +117,14 @@ class UvmsNode(Node):
         try:
             action()
         except UvmsError as fault:
+            self.refuse(self._status.stamp, [fault])
+
+    def refuse(self, stamp: int, faults: Sequence[UvmsError]) -> None:
+        """Log, count and report inputs that are not used."""
+        for fault in faults:
             self._refused += 1
             self.get_logger().error(str(fault), throttle_duration_sec=1.0)
-            self.report(self._status.stamp, diagnostics.ERROR, str(fault))
+            self.report(stamp, diagnostics.ERROR, str(fault))
 
     def report(
         self, stamp: int, level: int = diagnostics.OK, message: str = "ok", **values: Any

@@ -35,6 +35,9 @@ class Spinner:
 
     A node may have a `deadline() -> float | None` (monotonic seconds at which it wants to be woken)
     and an `on_wake()` that is then called in the executor's own thread.
+
+    While events keep coming the executor does not look at the clock; a callback that comes often
+    calls `breathe`, so that deadlines and `until` get their turn all the same.
     """
 
     def __init__(self, nodes: Sequence[Node]) -> None:
@@ -43,6 +46,8 @@ class Spinner:
         for node in nodes:
             self._executor.add_node(node)
         self.done: Future = Future()
+        self._turn: Future = Future()
+        self._turn_ends = 0.0
         self._wakers = [node for node in nodes if hasattr(node, "on_wake")]
         # Threads that were there before `start` (of a BLAS library, say) do not block the signals;
         # one that comes to them runs this handler, between two sleeps of the main thread.
@@ -55,20 +60,27 @@ class Spinner:
         self._finish()
         self._executor.wake()
 
+    def breathe(self) -> None:
+        """From a callback: let `spin` look up, if it has not done so for a while."""
+        if time.monotonic() >= self._turn_ends and not self._turn.done():
+            self._turn.set_result(None)
+
     def _finish(self) -> None:
-        if not self.done.done():
-            self.done.set_result(None)
+        for future in (self.done, self._turn):
+            if not future.done():
+                future.set_result(None)
 
     def spin(self, until: Callable[[], bool] = lambda: False) -> None:
         """Serve callbacks and deadlines until `stop`, a signal, or `until()` is true."""
         while rclpy.ok() and not self.done.done() and not until():
-            self._executor.spin_until_future_complete(self.done, timeout_sec=self._sleep())
-            self._wake()
+            self.spin_once(IDLE)
 
     def spin_once(self, timeout: float) -> None:
         """Serve what comes within the time-out, s."""
         wait = min(timeout, self._sleep())
-        self._executor.spin_until_future_complete(self.done, timeout_sec=wait)
+        self._turn, self._turn_ends = Future(), time.monotonic() + wait
+        if not self.done.done():
+            self._executor.spin_until_future_complete(self._turn, timeout_sec=wait)
         self._wake()
 
     def spin_for(self, future: Future, timeout: float) -> bool:

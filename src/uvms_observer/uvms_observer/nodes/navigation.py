@@ -24,14 +24,12 @@ class NavigationNode(UvmsNode):
         self.connect(inputs, topics.IMU, self._step, every=self.period)
 
     def _step(self, tick: Tick) -> None:
-        odometry = self._filter.step(
-            tick.stamp,
-            tick[topics.IMU.name],
-            tick[topics.DVL.name],
-            tick[topics.PRESSURE.name],
-            tick[topics.GPS.name],
+        sensors = (topics.IMU, topics.DVL, topics.PRESSURE, topics.GPS)
+        good, faults = zip(
+            *(self._filter.screen(tick.stamp, tick[topic.name]) for topic in sensors), strict=True
         )
-        self.send(topics.ODOMETRY, odometry)
+        self.refuse(tick.stamp, [fault for some in faults for fault in some])
+        self.send(topics.ODOMETRY, self._filter.step(tick.stamp, *good))
         self.report_each_second(tick.stamp, **self._filter.status())
 
 
