@@ -31,7 +31,7 @@ class LimitsConfig(Config):
         0.4, gt=0, le=1.0, description="planned joint rate over the vehicle file's limit"
     )
     joint_acceleration_fraction: float = Field(
-        0.4, gt=0, le=1.0, description="planned joint acceleration over the vehicle file's limit"
+        0.2, gt=0, le=1.0, description="planned joint acceleration over the vehicle file's limit"
     )
     joint_margin_deg: float = Field(
         2.0, ge=0, le=30.0, description="deg, distance that the plan keeps from each joint limit"
@@ -69,7 +69,12 @@ class ProjectionConfig(Config):
 
 
 class FitnessConfig(Config):
-    """What makes a candidate good; with all three numbers zero it is eq. (18) as printed."""
+    """What makes a candidate good; combined and with all numbers zero it is eq. (18) as printed."""
+
+    combined: bool = Field(
+        False,
+        description="judge the sum of restoring and coupling wrench, as printed, not each alone",
+    )
 
     lookahead_s: float = Field(
         6.0, ge=0, le=60.0, description="s, restoring wrench where the arm's motion leads in this"

@@ -34,10 +34,11 @@ def body_motion(problem, increment):
 
 @kernel
 def self_disturbance(model, problem, increment, lookahead):
-    """F_dis (6,) of eq. (16) for a candidate: restoring plus coupling wrench, body frame.
+    """Restoring (first six) and coupling wrench (last six) of a candidate, body frame; (12,).
 
-    The restoring wrench is taken where the joints would be `lookahead` s after the step if they
-    kept their rate; the coupling wrench at the step, in still water.
+    Their sum is F_dis of eq. (16). The restoring wrench is taken where the joints would be
+    `lookahead` s after the step if they kept their rate; the coupling wrench at the step, in still
+    water.
     """
     h = problem.step
     nu, nu_dot = body_motion(problem, increment)
@@ -45,20 +46,33 @@ def self_disturbance(model, problem, increment, lookahead):
     q_dot = increment[VEHICLE:] / h
     q_ddot = (increment[VEHICLE:] - problem.previous[VEHICLE:]) / h**2
     level = yaw_quaternion(problem.configuration[3] + increment[3])
-    wrench = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
-    restoring = restoring_wrench(model, level, q + lookahead * q_dot)
-    for i in range(6):
-        wrench[i] += restoring[i]
-    return wrench
+    wrenches = np.zeros(12)
+    wrenches[:6] = restoring_wrench(model, level, q + lookahead * q_dot)
+    wrenches[6:] = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
+    return wrenches
+
+
+@inner
+def judged_disturbance(model, problem, increment):
+    """The numbers (12,) whose squares make up the cost of a candidate's self-disturbance.
+
+    F_dis and zeros, as eq. (18) is printed, where the problem is `combined`; else restoring and
+    coupling wrench on their own: in the sum a jerk of the arm would pay for a weight that stays.
+    """
+    wrenches = self_disturbance(model, problem, increment, problem.lookahead)
+    if problem.combined:
+        for i in range(6):
+            wrenches[i] += wrenches[6 + i]
+            wrenches[6 + i] = 0.0
+    return wrenches
 
 
 @inner
 def cost(model, problem, increment):
-    """Sum of F_dis squared, eq. (18), plus what the motion and its change of rate cost."""
-    wrench = self_disturbance(model, problem, increment, problem.lookahead)
+    """Sum of the squared self-disturbance, eq. (18), and what motion and change of rate cost."""
     total = 0.0
-    for i in range(6):
-        total += wrench[i] ** 2
+    for value in judged_disturbance(model, problem, increment):
+        total += value**2
     for i in range(increment.shape[0]):
         if problem.reach[i] > 0.0:
             change = (increment[i] - problem.previous[i]) / problem.jump[i]

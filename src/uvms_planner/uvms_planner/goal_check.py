@@ -8,7 +8,7 @@ from uvms_dynamics.signals import Array, PathGoal
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
 from uvms_planner.jit import kernel
-from uvms_planner.path import EndEffectorPath, JoinedPath
+from uvms_planner.path import EndEffectorPath, JoinedPath, PathSample
 from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project, within_tolerance
 from uvms_planner.solver import StepSolver
@@ -110,7 +110,12 @@ def check_reachable(
     )
     if index < 0:
         return
-    _reject(path, float(times[index]), problem, solver, distance, angle, frozen)
+    _reject_unreachable(times[index:], targets[index:], problem, solver, frozen)
+    speed = float(np.linalg.norm(targets[index].velocity))
+    raise GoalRejected(
+        f"path too fast: at t = {times[index]:g} s it moves at {speed:.4g} m/s; within the rate"
+        f" limits the end effector stays {_misses(problem, distance, angle)}"
+    )
 
 
 @kernel
@@ -137,35 +142,34 @@ def go_along(model, problem, positions, rotations, lower, upper, frozen):
     return -1, 0.0, 0.0
 
 
-def _reject(
-    path: EndEffectorPath | JoinedPath,
-    time: float,
+def _reject_unreachable(
+    times: Array,
+    targets: list[PathSample],
     problem: StepProblem,
     solver: StepSolver,
-    distance: float,
-    angle: float,
     frozen: NDArray[np.bool_],
 ) -> None:
-    """Say whether the rates or the reach are too small at `time`, and by how much."""
-    lower = np.where(frozen, 0.0, np.minimum(solver.limits.lower - problem.configuration, 0.0))
-    upper = np.where(frozen, 0.0, np.maximum(solver.limits.upper - problem.configuration, 0.0))
-    roomy = problem._replace(lower=lower, upper=upper, iterations=SEARCH_ITERATIONS)
-    far, turned = project(solver.model, roomy, np.zeros_like(problem.configuration))
-    if within_tolerance(problem, far, turned):
-        speed = float(np.linalg.norm(path.sample(time).velocity))
-        raise GoalRejected(
-            f"path too fast: at t = {time:g} s it moves at {speed:.4g} m/s; within the rate limits"
-            f" the end effector stays {_misses(problem, distance, angle)}"
-        )
-    if far >= problem.position_tolerance:
-        raise GoalRejected(
-            f"path: at t = {time:g} s the nearest reachable point is {far:.4g} m away, allowed"
-            f" {problem.position_tolerance:g} m"
-        )
-    raise GoalRejected(
-        f"path: at t = {time:g} s the nearest reachable orientation is {np.rad2deg(turned):.4g} deg"
-        f" away, allowed {np.rad2deg(problem.orientation_tolerance):g} deg"
-    )
+    """Raise GoalRejected at the first target out of reach, however slowly one would go there."""
+    configuration = problem.configuration.copy()
+    for time, target in zip(times, targets, strict=True):
+        lower = np.where(frozen, 0.0, np.minimum(solver.limits.lower - configuration, 0.0))
+        upper = np.where(frozen, 0.0, np.maximum(solver.limits.upper - configuration, 0.0))
+        still = np.zeros_like(configuration)
+        roomy = solver.problem(configuration, still, target, (lower, upper))
+        roomy = roomy._replace(iterations=SEARCH_ITERATIONS)
+        distance, angle = project(solver.model, roomy, still)
+        if distance >= problem.position_tolerance:
+            raise GoalRejected(
+                f"path: at t = {time:g} s the nearest reachable point is {distance:.4g} m away,"
+                f" allowed {problem.position_tolerance:g} m"
+            )
+        if angle >= problem.orientation_tolerance:
+            raise GoalRejected(
+                f"path: at t = {time:g} s the nearest reachable orientation is"
+                f" {np.rad2deg(angle):.4g} deg away, allowed"
+                f" {np.rad2deg(problem.orientation_tolerance):g} deg"
+            )
+        configuration = configuration + still
 
 
 def _misses(problem: StepProblem, distance: float, angle: float) -> str:

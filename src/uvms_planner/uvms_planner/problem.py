@@ -35,6 +35,7 @@ class StepProblem(NamedTuple):
     damping: float
     step: float  # s
     lookahead: float  # s
+    combined: bool  # whether restoring and coupling wrench are judged by their sum
     smoothness_weight: float
     roll_max: float  # rad
     pitch_max: float  # rad

@@ -6,7 +6,7 @@ Without it the bits of the last improvement would shake the vehicle from step to
 import numpy as np
 
 from uvms_planner.constraints import better
-from uvms_planner.fitness import judge, self_disturbance
+from uvms_planner.fitness import judge, judged_disturbance
 from uvms_planner.jit import inner, kernel
 from uvms_planner.linear import solve_in_place
 from uvms_planner.projection import configuration_jacobian, tool_error
@@ -19,29 +19,29 @@ HALVINGS = 4
 def normal_equations(model, problem, increment, hessian, gradient):
     """Fill A^T A (m, m) and A^T rho (m,) of the cost's residuals rho about `increment` (m,).
 
-    The residuals are F_dis (six, differentiated numerically) and the weighted motion and change of
-    motion of every variable (linear). x, y, z do not enter the restoring wrench, but the coupling.
+    The residuals are the self-disturbance (twelve, differentiated numerically) and the weighted
+    motion and change of motion of every variable (linear).
     """
     size = increment.shape[0]
-    wrench = self_disturbance(model, problem, increment, problem.lookahead)
-    slope = np.zeros((6, size))
+    wrench = judged_disturbance(model, problem, increment)
+    slope = np.zeros((12, size))
     for i in range(size):
         if problem.reach[i] <= 0.0:
             continue
         delta = DIFFERENCE * problem.reach[i]
         kept = increment[i]
         increment[i] = kept + delta
-        moved = self_disturbance(model, problem, increment, problem.lookahead)
+        moved = judged_disturbance(model, problem, increment)
         increment[i] = kept
-        for a in range(6):
+        for a in range(12):
             slope[a, i] = (moved[a] - wrench[a]) / delta
     for i in range(size):
         gradient[i] = 0.0
-        for a in range(6):
+        for a in range(12):
             gradient[i] += slope[a, i] * wrench[a]
         for j in range(size):
             hessian[i, j] = 0.0
-            for a in range(6):
+            for a in range(12):
                 hessian[i, j] += slope[a, i] * slope[a, j]
     for i in range(size):
         if problem.reach[i] > 0.0:

@@ -37,7 +37,9 @@ class Samples:
     acceleration: Array  # (k, m)
 
 
-def quintic(start: tuple[Array, Array, Array], end: tuple[Array, Array, Array], duration: float):
+def quintic(
+    start: tuple[Array, Array, Array], end: tuple[Array, Array, Array], duration: float | Array
+):
     """Coefficients (6, m) of c(t) = sum a_i t^i with given c, c_dot, c_ddot at both ends."""
     c0, v0, a0 = start
     c1, v1, a1 = end

@@ -89,6 +89,7 @@ class StepSolver:
             damping=config.projection.damping,
             step=config.step_s,
             lookahead=config.fitness.lookahead_s,
+            combined=config.fitness.combined,
             smoothness_weight=config.fitness.smoothness_weight,
             roll_max=np.deg2rad(config.limits.roll_max_deg),
             pitch_max=np.deg2rad(config.limits.pitch_max_deg),
@@ -137,7 +138,8 @@ class StepSolver:
 
     def disturbance(self, problem: StepProblem, increment: Array) -> Array:
         """F_dis (6,) of eq. (16) at the end of the step, without looking ahead."""
-        return self_disturbance(self.model, problem, increment, 0.0)
+        wrenches = self_disturbance(self.model, problem, increment, 0.0)
+        return wrenches[:6] + wrenches[6:]
 
     def free_attitude(self, configuration: Array) -> tuple[float, float]:
         """Roll and pitch in rad that the vehicle takes up freely in `configuration` (m,)."""

@@ -1,10 +1,9 @@
 """Coming to rest and staying there: before a goal, after its end, and when it is cancelled."""
 
-import math
-
 import numpy as np
+from numpy.typing import NDArray
 
-from uvms_dynamics.signals import to_nanoseconds
+from uvms_dynamics.signals import Array, to_nanoseconds, to_seconds
 from uvms_planner.knot_motion import meet
 from uvms_planner.limits import PEAK_BRAKING
 from uvms_planner.path import PathSample
@@ -20,21 +19,24 @@ class Stop:
         self, solver: StepSolver, start: Knot, step: float, anchor: PathSample | None = None
     ):
         self._solver, self._start, self._step, self._anchor = solver, start, step, anchor
-        self._steps = _steps_to_rest(start, solver, step)
-        duration = max(self._steps, 1) * step
+        steps = _steps_to_rest(start, solver, step)
+        self._rest = start.stamp + int(np.max(steps)) * to_nanoseconds(step)
+        # each variable for itself, so that none goes farther than its own deceleration needs
+        self._durations = np.maximum(steps, 1) * step
         # the end that makes the rate fall as (1 - u)^2 (1 + 2 u), u = t / duration
-        end = (
-            start.configuration + start.rate * duration / 2 + start.acceleration * duration**2 / 12
-        )
+        travel = start.rate / 2 + start.acceleration * self._durations / 12
+        end = start.configuration + travel * self._durations
         zero = np.zeros_like(end)
         self._coefficients = quintic(
-            (start.configuration, start.rate, start.acceleration), (end, zero, zero), duration
+            (start.configuration, start.rate, start.acceleration),
+            (end, zero, zero),
+            self._durations,
         )
 
     @property
     def rest(self) -> int:
         """Stamp from which on nothing moves."""
-        return self._start.stamp + self._steps * to_nanoseconds(self._step)
+        return self._rest
 
     def end(self, stamp: int) -> Knot:
         """The first knot at rest that is not before `stamp`."""
@@ -53,13 +55,10 @@ class Stop:
         return end, hermite(knot, end, self._step, times)
 
     def _braked(self, knot: Knot, stamp: int) -> Knot:
-        elapsed = (stamp - self._start.stamp) / to_nanoseconds(1.0)
-        state = evaluate(self._coefficients, np.array([elapsed]))
-        increment = state.configuration[0] - knot.configuration
+        c, rate, acceleration = self._state(to_seconds(stamp - self._start.stamp))
+        increment = c - knot.configuration
         if self._anchor is None:
-            return Knot(
-                stamp, state.configuration[0], state.rate[0], state.acceleration[0], increment
-            )
+            return Knot(stamp, c, rate, acceleration, increment)
         problem = self._solver.problem(
             knot.configuration,
             knot.increment,
@@ -68,15 +67,22 @@ class Stop:
         )
         project(self._solver.model, problem, increment)
         end, still = knot.configuration + increment, np.zeros(6)
-        rate, acceleration = state.rate[0].copy(), state.acceleration[0].copy()
         if stamp < self.rest:
             meet(self._solver.model, problem, end, still, still, rate, acceleration)
         return Knot(stamp, end, rate, acceleration, increment)
 
+    def _state(self, elapsed: float) -> tuple[Array, Array, Array]:
+        """Configuration, rate and acceleration (m,) `elapsed` s after the start."""
+        times = np.minimum(elapsed, self._durations)
+        samples = evaluate(self._coefficients, times)
+        parts = samples.configuration, samples.rate, samples.acceleration
+        c, rate, acceleration = (np.diagonal(part).copy() for part in parts)
+        return c, rate, acceleration
 
-def _steps_to_rest(start: Knot, solver: StepSolver, step: float) -> int:
-    if not (np.any(start.rate) or np.any(start.acceleration)):
-        return 0
+
+def _steps_to_rest(start: Knot, solver: StepSolver, step: float) -> NDArray[np.int64]:
+    """Whole steps (m,) in which each variable can come to rest; 0 for those at rest."""
     deceleration = solver.limits.jump / step**2
-    seconds = float(np.max(PEAK_BRAKING * np.abs(start.rate) / deceleration))
-    return max(1, math.ceil(seconds / step))
+    seconds = PEAK_BRAKING * np.abs(start.rate) / deceleration
+    moving = (start.rate != 0.0) | (start.acceleration != 0.0)
+    return np.where(moving, np.maximum(1, np.ceil(seconds / step)), 0).astype(np.int64)
