@@ -52,9 +52,8 @@ def _apart(one: Any, two: Any) -> float:
         return float("inf")
     if not a.size:
         return 0.0
-    apart = np.abs(a - b)
-    apart[np.isnan(a) & np.isnan(b)] = 0.0  # a GPS without a fix
-    return float(np.max(apart))
+    both_unknown = np.isnan(a) & np.isnan(b)  # a GPS without a fix
+    return float(np.max(np.where(both_unknown, 0.0, np.abs(a - b))))
 
 
 def table(differences: Sequence[Difference]) -> str:

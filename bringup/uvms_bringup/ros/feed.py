@@ -34,7 +34,8 @@ from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds, to_second
 START_PATIENCE_S = 90.0
 TICK_PATIENCE_S = 5.0
 FIRST_PATIENCE_S = 60.0
-"""The first tick may compile kernels."""
+FIRST_TICKS = 3
+"""The first ticks may compile kernels."""
 UNANSWERED = 3
 """After so many ticks in a row without an answer the node is given up."""
 LOOK_S = 0.5
@@ -87,7 +88,11 @@ class Feeder(Node):
 
     def _matched(self) -> bool:
         self.lack = "topics are not yet connected"
-        heard = all(one.get_subscription_count() for one in self._inputs.values())
+        heard = all(
+            publisher.get_subscription_count()
+            for name, publisher in self._inputs.items()
+            if name != topics.CLOCK.name  # which a node hears only if it uses simulation time
+        )
         return heard and all(one.get_publisher_count() for one in self._outputs)
 
     def feed(self, tick: TickRecord) -> None:
@@ -158,11 +163,11 @@ class Feeding:
     def all_ticks(self, metronome: Metronome, line: ProgressLine) -> int:
         """Feed tick by tick; returns how many were left unanswered."""
         unanswered = in_a_row = 0
-        patience = FIRST_PATIENCE_S
         for number, tick in enumerate(self.ticks):
             ahead = metronome.ahead(tick.stamp)
             if ahead > 0.0:
                 self._spinner.spin_for(Future(), ahead)
+            patience = FIRST_PATIENCE_S if number < FIRST_TICKS else TICK_PATIENCE_S
             answered = self._one(tick, patience)
             in_a_row = 0 if answered else in_a_row + 1
             unanswered += not answered
@@ -170,7 +175,6 @@ class Feeding:
                 self._give_up(tick)
             if number == 0:
                 self._send_goal()
-            patience = TICK_PATIENCE_S
             line.show(tick.stamp, f"{unanswered} ticks unanswered" if unanswered else "")
         return unanswered
 
