@@ -1,18 +1,20 @@
 """Friction and end stops."""
 
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_vehicles import REFERENCE
 
 from uvms_dynamics import build_model, joint_passive_torque
 
+untimed = settings(deadline=None)  # the first call compiles
 MODEL = build_model(REFERENCE)
 RATES = st.lists(st.floats(-3.0, 3.0), min_size=4, max_size=4).map(np.array)
 ANGLES = st.lists(st.floats(-4.0, 4.0), min_size=4, max_size=4).map(np.array)
 MIDDLE = np.radians([0.0, 30.0, 60.0, 0.0])
 
 
+@untimed
 @given(RATES)
 def test_friction_never_gives_energy(rates):
     assert (joint_passive_torque(MODEL, MIDDLE, rates) * rates <= 0.0).all()
@@ -23,6 +25,7 @@ def test_friction_slides_at_its_coulomb_level():
     np.testing.assert_allclose(torque, [-2.5, -2.5, -2.4, -1.2], rtol=1e-6)
 
 
+@untimed
 @given(ANGLES, RATES)
 def test_stops_push_inward_and_never_pull(angles, rates):
     stop = joint_passive_torque(MODEL, angles, rates) - joint_passive_torque(MODEL, MIDDLE, rates)

@@ -95,7 +95,8 @@ def forward_dynamics(
     n = vehicle.n_joints
     zero = np.zeros(6)
     bias = inverse_dynamics(vehicle, quaternion, nu, zero, q, q_dot, np.zeros(n), current)
-    return np.linalg.solve(mass_matrix(vehicle, q), tau - bias)
+    solution = np.linalg.solve(mass_matrix(vehicle, q), tau - bias)
+    return np.asarray(solution, dtype=np.float64)
 
 
 def hull_motion(quaternion: Array, nu: Array, nu_dot: Array, current: Array) -> Motion:

@@ -52,6 +52,7 @@ class Plant:
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)
         self._effort = np.zeros(vehicle.n_joints)
+        self._stamp = 0
         self._start()
 
     @property
@@ -101,7 +102,6 @@ class Plant:
 
     def _start(self) -> None:
         """Derivative and sensor readings of t = 0, without commands."""
-        self._stamp = 0
         idle = np.zeros(self._vehicle.n_thrusters)
         self._integrate(idle, self._states[:1], self._rates[:1])
         self._frame = self._sample((0,), self._states[:1], self._rates[:1])

@@ -9,11 +9,10 @@ from uvms_dynamics.vehicle import shapes
 from uvms_dynamics.vehicle.arm import Arm, Link
 from uvms_dynamics.vehicle.environment import Environment
 from uvms_dynamics.vehicle.frames import arm_frames
-from uvms_dynamics.vehicle.hull import Hull
+from uvms_dynamics.vehicle.hull import Hull, Spheroid
 from uvms_dynamics.vehicle.vehicle import Vehicle
 
 LINK_WORDS = ("volume_m3", "cg_m", "cb_m", "inertia_kg_m2", "added_mass", "drag")
-HULL_WORDS = ("volume_m3", "inertia_kg_m2", "added_mass")
 
 
 class MissingShapeError(Exception):
@@ -36,7 +35,7 @@ def expand(vehicle: Vehicle) -> dict[str, Any]:
 
 
 def _expand_link(link: Link, density: float, path: str) -> Link:
-    names = [name for name in LINK_WORDS if getattr(link, name) == "cylinder"]
+    names = [name for name in LINK_WORDS if _says(link, name, "cylinder")]
     if not names:
         return link
     shape = link.cylinder
@@ -56,23 +55,32 @@ def _expand_link(link: Link, density: float, path: str) -> Link:
 
 def _expand_hull(hull: Hull, arm: Arm, environment: Environment) -> Hull:
     density = environment.water_density_kg_m3
-    words = [name for name in HULL_WORDS if getattr(hull, name) == "spheroid"]
-    if words and hull.spheroid is None:
-        raise MissingShapeError(f"hull.{words[0]}: 'spheroid' needs the section hull.spheroid")
-    if hull.volume_m3 == "spheroid":
-        hull = hull.model_copy(update={"volume_m3": shapes.spheroid_volume(hull.spheroid)})
-    if hull.mass_kg == "neutral":
+    if _says(hull, "volume_m3", "spheroid"):
+        volume = shapes.spheroid_volume(_spheroid(hull, "volume_m3"))
+        hull = hull.model_copy(update={"volume_m3": volume})
+    if _says(hull, "mass_kg", "neutral"):
         wet = sum(link.mass_kg - density * link.volume_m3 for link in arm.links)
         hull = hull.model_copy(update={"mass_kg": density * hull.volume_m3 - wet})
-    if hull.inertia_kg_m2 == "spheroid":
-        inertia = shapes.spheroid_inertia(hull.spheroid, hull.mass_kg)
+    if _says(hull, "inertia_kg_m2", "spheroid"):
+        inertia = shapes.spheroid_inertia(_spheroid(hull, "inertia_kg_m2"), hull.mass_kg)
         hull = hull.model_copy(update={"inertia_kg_m2": inertia.tolist()})
-    if hull.added_mass == "spheroid":
-        added = shapes.spheroid_added_mass(hull.spheroid, density)
+    if _says(hull, "added_mass", "spheroid"):
+        added = shapes.spheroid_added_mass(_spheroid(hull, "added_mass"), density)
         hull = hull.model_copy(update={"added_mass": added.tolist()})
     level = _level_cg(hull, arm, density)
     cg = [level[i] if value == "trim" else value for i, value in enumerate(hull.cg_m)]
     return hull.model_copy(update={"cg_m": cg})
+
+
+def _spheroid(hull: Hull, name: str) -> Spheroid:
+    if hull.spheroid is None:
+        raise MissingShapeError(f"hull.{name}: 'spheroid' needs the section hull.spheroid")
+    return hull.spheroid
+
+
+def _says(section: Hull | Link, name: str, word: str) -> bool:
+    """Whether a field holds a word, which its type does not know of."""
+    return bool(getattr(section, name) == word)
 
 
 def _level_cg(hull: Hull, arm: Arm, density: float) -> Array:

@@ -22,9 +22,9 @@ def reference_file() -> Path:
 
 
 def _candidates() -> Iterator[Path]:
-    for parent in Path(__file__).resolve().parents:  # the source tree (editable installation)
-        if (parent / "bringup" / "config").is_dir():
-            yield parent / "bringup" / "config" / REFERENCE
+    here = Path(__file__).resolve()
+    if here.parts[-5:-1] == ("src", "uvms_dynamics", "uvms_dynamics", "vehicle"):
+        yield here.parents[4] / "bringup" / "config" / REFERENCE
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):
         yield Path(prefix) / _SHARE / REFERENCE
     yield Path(sys.prefix) / _SHARE / REFERENCE
