@@ -57,12 +57,15 @@ def graph_of(*makers: Callable[[], Node]) -> Iterator[tuple[Spinner, list[Node]]
     domain = int(own_domain()["ROS_DOMAIN_ID"])
     os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
     rclpy.init(domain_id=domain, signal_handler_options=SignalHandlerOptions.NO)
-    nodes = [make() for make in makers]
-    spinner = Spinner(nodes)
     try:
-        yield spinner, nodes
+        nodes = [make() for make in makers]
+        spinner = Spinner(nodes)
+        try:
+            yield spinner, nodes
+        finally:
+            spinner.shutdown()
     finally:
-        spinner.shutdown()
+        rclpy.try_shutdown()
 
 
 def spin_until(spinner: Spinner, ready: Callable[[], bool], rounds: int = 600) -> None:

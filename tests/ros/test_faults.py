@@ -99,9 +99,6 @@ def test_a_wrong_parameter_is_named_with_what_is_allowed():
     def plant() -> PlantNode:
         return PlantNode(parameter_overrides=parameters(pace="fast"))
 
-    with pytest.raises(ConfigError, match="pace is 'fast'; choose one of lockstep, realtime"):
+    with pytest.raises(ConfigError, match=r"pace: Input should be 'lockstep' or 'realtime'"):
         with graph_of(plant):
             pass
-    import rclpy
-
-    rclpy.try_shutdown()

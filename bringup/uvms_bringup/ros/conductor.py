@@ -11,7 +11,6 @@ from std_srvs.srv import SetBool, Trigger
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.recorder import Recorder, Write
 from uvms_dynamics import diagnostics, topics
-from uvms_dynamics.diagnostics import Status
 from uvms_dynamics.messages import from_message, to_message
 from uvms_dynamics.ros.convert import action_class, message_class, to_ros
 from uvms_dynamics.ros.node import qos_profile
@@ -37,7 +36,7 @@ class Conductor(Node):
         super().__init__("conductor", **options)
         self._recorder = Recorder(self, write)
         self._watch = watch
-        self.statuses: dict[str, Status] = {}
+        self._faults: dict[str, str] = {}
         self.feedback: Any = None
         self.result: Any = None
         self.result_status: int | None = None  # action_msgs/msg/GoalStatus
@@ -117,6 +116,7 @@ class Conductor(Node):
             ANSWER_PATIENCE_S,
             lambda: f"nobody serves the action {action.name!r}",
         )
+        self._faults.clear()
         sent = self._client.send_goal_async(message, feedback_callback=self._take_feedback)
         self._await(
             spinner, sent.done, ANSWER_PATIENCE_S, lambda: f"no answer from {action.name!r}"
@@ -131,9 +131,8 @@ class Conductor(Node):
         # An action's rejection carries no text; the planner gives its reason on /diagnostics.
         deadline = time.monotonic() + END_PATIENCE_S
         while time.monotonic() < deadline:
-            status = self.statuses.get("motion_planner")
-            if status is not None and status.level == diagnostics.ERROR:
-                return status.message
+            if "motion_planner" in self._faults:
+                return self._faults["motion_planner"]
             spinner.spin_once(0.05)
         return "no reason given"
 
@@ -157,7 +156,8 @@ class Conductor(Node):
 
     def _take_status(self, msg: Any) -> None:
         status = from_message(topics.DIAGNOSTICS, msg)
-        self.statuses[status.name] = status
+        if status.level == diagnostics.ERROR:
+            self._faults[status.name] = status.message
 
     def _take_feedback(self, msg: Any) -> None:
         self.feedback = msg.feedback

@@ -3,8 +3,8 @@
 from uvms_control import ControlConfig, Controller
 from uvms_dynamics import topics
 from uvms_dynamics.gate import Covering, Same, Tick
+from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.spin import main_of
 
 
 class ControllerNode(UvmsNode):
@@ -36,7 +36,7 @@ class ControllerNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_control controller`."""
-    return main_of(ControllerNode, __doc__, args)
+    return main_of(ControllerNode, __doc__ or "", (ControlConfig,), args)
 
 
 if __name__ == "__main__":

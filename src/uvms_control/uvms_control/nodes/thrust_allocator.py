@@ -3,8 +3,8 @@
 from uvms_control import AllocatorConfig, ThrustAllocator
 from uvms_dynamics import topics
 from uvms_dynamics.gate import Same, Tick
+from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.spin import main_of
 from uvms_dynamics.signals import Wrench
 
 
@@ -25,7 +25,7 @@ class ThrustAllocatorNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_control thrust_allocator`."""
-    return main_of(ThrustAllocatorNode, __doc__, args)
+    return main_of(ThrustAllocatorNode, __doc__ or "", (AllocatorConfig,), args)
 
 
 if __name__ == "__main__":

@@ -7,8 +7,8 @@ from std_srvs.srv import SetBool, Trigger
 
 from uvms_dynamics import Plant, PlantConfig, diagnostics, topics
 from uvms_dynamics.config import Config
+from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.spin import main_of
 from uvms_dynamics.signals import (
     JointCommand,
     ThrusterCommand,
@@ -16,6 +16,7 @@ from uvms_dynamics.signals import (
     to_seconds,
 )
 
+COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
 """How often an idle plant looks whether all its peers are there, s of wall time."""
 
@@ -57,8 +58,8 @@ class PlantNode(UvmsNode):
         self._wanted = self._pace.auto_start
         self._deadline = time.monotonic() + POLL
         self._timeouts = 0
-        self.listen(topics.THRUSTER_COMMAND, lambda c: self._take("thruster_command", c))
-        self.listen(topics.JOINT_COMMAND, lambda c: self._take("joint_command", c))
+        for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
+            self.listen(topic, lambda command, name=topic.name: self._take(name, command))
         self.create_service(Trigger, "start", self._answer_start)
         self.create_service(SetBool, "pause", self._answer_pause)
 
@@ -96,6 +97,8 @@ class PlantNode(UvmsNode):
         if not self._running or self._paused or self._finished:
             self._deadline = None if self.lockstep else time.monotonic() + POLL
             return
+        if not self.lockstep:
+            self._warn_of_stale()
         self.guard(lambda: self._plant.step(self._thrust(), self._effort()))
         self._publish_tick()
         self._deadline = self._next_deadline(self._pace.timeout_s)
@@ -134,7 +137,7 @@ class PlantNode(UvmsNode):
         if self._paused or self._finished:
             self._deadline = None
             return
-        missing = [name for name in ("thruster_command", "joint_command") if self._stale(name)]
+        missing = [name for name in COMMANDS if self._stale(name)]
         self._timeouts += 1
         text = (
             f"t = {to_seconds(self._plant.stamp):.2f} s: no {' and no '.join(missing)} in time; "
@@ -144,20 +147,27 @@ class PlantNode(UvmsNode):
         self.report(self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts)
         self._advance()
 
+    def _warn_of_stale(self) -> None:
+        missing = [name for name in COMMANDS if self._stale(name)]
+        if missing and self._plant.stamp > to_nanoseconds(self._pace.stale_s):
+            text = f"no {' and no '.join(missing)} for {self._pace.stale_s:g} s; using none"
+            self.get_logger().warning(text, throttle_duration_sec=1.0)
+            self.report(self._plant.stamp, diagnostics.WARN, text)
+
     def _stale(self, name: str) -> bool:
         command = self._commands.get(name)
         allowed = 0 if self.lockstep else to_nanoseconds(self._pace.stale_s)
         return command is None or self._plant.stamp - command.stamp > allowed
 
     def _thrust(self) -> ThrusterCommand:
-        if self._stale("thruster_command"):
+        if self._stale(topics.THRUSTER_COMMAND.name):
             return self._plant.safe_thrust()
-        return self._commands["thruster_command"]
+        return self._commands[topics.THRUSTER_COMMAND.name]
 
     def _effort(self) -> JointCommand:
-        if self._stale("joint_command"):
+        if self._stale(topics.JOINT_COMMAND.name):
             return self._plant.safe_effort()
-        return self._commands["joint_command"]
+        return self._commands[topics.JOINT_COMMAND.name]
 
     def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success, response.message = not self._running, "already running"
@@ -184,7 +194,7 @@ class PlantNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_dynamics plant`."""
-    return main_of(PlantNode, __doc__, args)
+    return main_of(PlantNode, __doc__ or "", (PaceConfig, PlantConfig), args)
 
 
 if __name__ == "__main__":

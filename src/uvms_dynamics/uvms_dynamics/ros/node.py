@@ -1,8 +1,9 @@
 """What the six nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
 from collections.abc import Callable, Mapping, Sequence
-from typing import Any, TypeVar
+from typing import Any, Literal, TypeVar
 
+from pydantic import Field
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -12,17 +13,16 @@ from uvms_dynamics import diagnostics, topics
 from uvms_dynamics.cdr import codec
 from uvms_dynamics.config import Config
 from uvms_dynamics.diagnostics import Status
-from uvms_dynamics.errors import ConfigError, UvmsError
+from uvms_dynamics.errors import UvmsError
 from uvms_dynamics.gate import Input, Tick, TickGate
 from uvms_dynamics.messages import from_message, to_message
 from uvms_dynamics.ros.convert import message_class
-from uvms_dynamics.ros.parameters import declare, declare_config
+from uvms_dynamics.ros.parameters import declare_config
 from uvms_dynamics.signals import NANOSECONDS, to_nanoseconds
 from uvms_dynamics.topics import Qos, Topic
 from uvms_dynamics.vehicle import Vehicle, load_vehicle
 
 C = TypeVar("C", bound=Config)
-PACES = ("lockstep", "realtime")
 DIAGNOSTICS_PERIOD = NANOSECONDS
 NEEDED = frozenset(t for n in topics.NODES.values() for t in n.inputs) - {topics.CLOCK}
 """Topics that some node of the loop reads: a run cannot start before somebody listens to them."""
@@ -38,6 +38,19 @@ def qos_profile(qos: Qos) -> QoSProfile:
     )
 
 
+class NodeConfig(Config):
+    """What every node of the loop is told."""
+
+    vehicle_file: str = Field("", description="vehicle file; empty: the reference vehicle")
+    seed: int = Field(1, ge=0, description="seed of this run's random numbers")
+    pace: Literal["lockstep", "realtime"] = Field(
+        "lockstep",
+        description="lockstep (repeatable: wait for all inputs of a stamp) or realtime (use the "
+        "newest); the same for all nodes",
+    )
+    control_period_s: float = Field(0.05, gt=0.0, description="period of the control loop, s")
+
+
 class UvmsNode(Node):
     """A thin shell around a core class: parameters in, messages to signals, signals to messages.
 
@@ -50,15 +63,11 @@ class UvmsNode(Node):
 
     def __init__(self, name: str, **options: Any) -> None:
         super().__init__(name, **options)
-        path = declare(self, "vehicle_file", "", "vehicle file; empty: the reference vehicle")
-        self.vehicle: Vehicle = load_vehicle(path or None)
-        self.seed: int = declare(self, "seed", 1, "seed of this run's random numbers")
-        self.pace: str = declare(self, "pace", "lockstep", "lockstep (repeatable) or realtime")
-        if self.pace not in PACES:
-            raise ConfigError(f"{name}: pace is {self.pace!r}; choose one of {', '.join(PACES)}")
-        self.period = to_nanoseconds(
-            declare(self, "control_period_s", 0.05, "period of the control loop, s")
-        )
+        common = self.config(NodeConfig)
+        self.vehicle: Vehicle = load_vehicle(common.vehicle_file or None)
+        self.seed = common.seed
+        self.lockstep = common.pace == "lockstep"
+        self.period = to_nanoseconds(common.control_period_s)
         self._topics = topics.NODES[name]
         self._outputs: dict[Topic, Publisher] = {}
         self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
@@ -69,11 +78,6 @@ class UvmsNode(Node):
         self._gate: TickGate | None = None
         self._receivers: dict[str, Any] = {}
         self.create_service(Trigger, f"{name}/ready", self._answer_ready)
-
-    @property
-    def lockstep(self) -> bool:
-        """Whether the plant waits for this node's answers."""
-        return self.pace == "lockstep"
 
     def config(self, model: type[C]) -> C:
         """The node's configuration from its ROS parameters."""

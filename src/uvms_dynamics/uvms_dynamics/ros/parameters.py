@@ -15,12 +15,6 @@ from uvms_dynamics.config import Config, validated
 C = TypeVar("C", bound=Config)
 
 
-def declare(node: Node, name: str, default: Any, description: str) -> Any:
-    """Declare one parameter of the node itself and return its value."""
-    descriptor = ParameterDescriptor(description=description, read_only=True)
-    return node.declare_parameter(name, default, descriptor).value
-
-
 def declare_config(node: Node, model: type[C]) -> C:
     """Declare every field of `model` (nested ones with dots) and return the validated values.
 
@@ -45,6 +39,19 @@ def flatten(config: Config) -> dict[str, Any]:
     """
     leaves = _leaves(type(config), config)
     return {".".join(path): _to_ros(value) for path, _, value in leaves if value != ()}
+
+
+def describe(*models: type[Config]) -> str:
+    """The parameters of configurations as text: name, default, bounds and meaning, a line each."""
+    lines = []
+    for model in models:
+        for path, field, default in _leaves(model, model()):
+            bounds = [b for b in _bounds(field) if b is not None]
+            within = f", {bounds[0]:g} to {bounds[1]:g}" if len(bounds) == 2 else ""
+            name = ".".join(path)
+            shown = list(default) if isinstance(default, tuple) else default
+            lines.append(f"  {name} ({shown}{within})\n      {field.description or ''}")
+    return "\n".join(lines)
 
 
 def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:

@@ -6,7 +6,6 @@ their own, because a handler that runs inside rcl's wait crashes now and then.
 """
 
 import signal
-import sys
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -16,8 +15,6 @@ from rclpy.experimental import EventsExecutor
 from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
-
-from uvms_dynamics.errors import UvmsError
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 IDLE = 0.2
@@ -115,23 +112,3 @@ class Spinner:
             deadline = node.deadline()
             if deadline is not None and now >= deadline:
                 node.on_wake()
-
-
-def main_of(make: Callable[[], Node], description: str, args: Sequence[str] | None = None) -> int:
-    """The `main` of a node's executable: help, start, spin, shut down; errors in one clear line."""
-    args = list(sys.argv[1:] if args is None else args)
-    if "-h" in args or "--help" in args:
-        print(description)
-        return 0
-    start([sys.argv[0], *args])
-    try:
-        spinner = Spinner([make()])
-    except UvmsError as fault:
-        print(f"error: {fault}", file=sys.stderr)
-        rclpy.try_shutdown()
-        return 2
-    try:
-        spinner.spin()
-    finally:
-        spinner.shutdown()
-    return 0

@@ -2,8 +2,8 @@
 
 from uvms_dynamics import topics
 from uvms_dynamics.gate import Previous, Same, Tick
+from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.spin import main_of
 from uvms_observer import DisturbanceObserver, ObserverConfig
 
 
@@ -32,7 +32,7 @@ class DisturbanceObserverNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_observer disturbance_observer`."""
-    return main_of(DisturbanceObserverNode, __doc__, args)
+    return main_of(DisturbanceObserverNode, __doc__ or "", (ObserverConfig,), args)
 
 
 if __name__ == "__main__":

@@ -2,8 +2,8 @@
 
 from uvms_dynamics import topics
 from uvms_dynamics.gate import Periodic, Tick
+from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.spin import main_of
 from uvms_dynamics.signals import to_nanoseconds
 from uvms_observer import NavigationConfig, NavigationFilter
 
@@ -40,7 +40,7 @@ def period_of(sensor) -> int:
 
 def main(args=None) -> int:
     """`ros2 run uvms_observer navigation`."""
-    return main_of(NavigationNode, __doc__, args)
+    return main_of(NavigationNode, __doc__ or "", (NavigationConfig,), args)
 
 
 if __name__ == "__main__":

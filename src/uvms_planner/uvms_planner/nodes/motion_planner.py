@@ -12,8 +12,8 @@ from uvms_dynamics.errors import UvmsError
 from uvms_dynamics.gate import Same, Tick
 from uvms_dynamics.messages import from_message
 from uvms_dynamics.ros.convert import action_class
+from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.spin import main_of
 from uvms_dynamics.signals import NANOSECONDS, to_nanoseconds
 from uvms_dynamics.topics import Action
 from uvms_planner import MotionPlanner, PlannerConfig, PlannerStep
@@ -111,7 +111,7 @@ def _filled(msg: Any, source: Any) -> Any:
 
 def main(args=None) -> int:
     """`ros2 run uvms_planner motion_planner`."""
-    return main_of(MotionPlannerNode, __doc__, args)
+    return main_of(MotionPlannerNode, __doc__ or "", (PlannerConfig,), args)
 
 
 if __name__ == "__main__":
