@@ -1,11 +1,11 @@
 """`uvms replay` on real ROS topics and with a real node."""
 
-import os
 import subprocess
 import sys
 
 import pytest
 import yaml
+from graph import own_domain
 
 from uvms_bringup.log.compare import compare
 from uvms_bringup.log.encode import SignalWriter
@@ -64,8 +64,7 @@ def run(tmp_path_factory):
 
 @pytest.fixture
 def surroundings(tmp_path):
-    domain = str(101 + os.getpid() % 100)
-    return os.environ | {"ROS_DOMAIN_ID": domain, "ROS_LOG_DIR": str(tmp_path / "ros")}
+    return own_domain() | {"ROS_LOG_DIR": str(tmp_path / "ros")}
 
 
 def start_replay(arguments, surroundings):
