@@ -1,5 +1,6 @@
 """Vehicle, kinematics, dynamics, thrusters, sensors and plant of the vehicle-manipulator system."""
 
+from uvms_dynamics import compile_cache  # first: it says where numba keeps what it compiles
 from uvms_dynamics.kernels import (
     coupling_wrench,
     end_effector,
@@ -37,6 +38,7 @@ __all__ = [
     "SensorFrame",
     "Vehicle",
     "build_model",
+    "compile_cache",
     "coupling_wrench",
     "dump_vehicle",
     "end_effector",

@@ -1,4 +1,4 @@
-"""The drag coefficient resampled so that a lookup needs neither a logarithm nor a search."""
+"""The drag coefficient, resampled so that numba kernels look it up without logarithm or search."""
 
 import math
 
