@@ -80,10 +80,10 @@ def attitude(run: Analysis) -> Figure:
         color = style.COLORS[index]
         axes.plot(style.thin(run.truth.time), style.thin(values), color=color, label="true")
         style.room(axes, values, 1.0)
-        if limits[index] is not None:
-            _limits(axes, -limits[index], limits[index])
-        title = f"{name}" + (f"   (limit ±{limits[index]:g}°)" if limits[index] else "")
-        axes.set_title(title)
+        limit = limits[index]
+        if limit is not None:
+            _limits(axes, -limit, limit)
+        axes.set_title(name if limit is None else f"{name}   (limit ±{limit:g}°)")
         axes.set_ylabel("deg")
     style.legend(rows[0])
     style.time_axis(rows[-1], run.truth.time)
@@ -157,7 +157,7 @@ def vehicle(run: Analysis) -> Figure:
         linear = index < 3
         values, color = pose[:, index], style.COLORS[index % 3]
         axes.plot(style.thin(run.truth.time), style.thin(values), color=color, label="true")
-        if plan is not None:
+        if plan is not None and run.planned is not None:
             axes.plot(run.planned.time, plan[:, index], label="planned", **style.REFERENCE)
             values = np.concatenate([values, plan[:, index]])
         style.room(axes, values, 0.02 if linear else 1.0)

@@ -14,11 +14,11 @@ from uvms_dynamics.signals import Array
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
 """Okabe and Ito's, which people with colour blindness can tell apart."""
 
-REFERENCE = {"color": "#444444", "linewidth": 0.9, "linestyle": (0, (4, 2))}
-LIMIT = {"color": "#b22222", "linewidth": 0.8, "linestyle": (0, (1, 1.5))}
-BAND = {"color": "#888888", "alpha": 0.22, "linewidth": 0.0}
+REFERENCE: dict[str, Any] = {"color": "#444444", "linewidth": 0.9, "linestyle": (0, (4, 2))}
+LIMIT: dict[str, Any] = {"color": "#b22222", "linewidth": 0.8, "linestyle": (0, (1, 1.5))}
+BAND: dict[str, Any] = {"color": "#888888", "alpha": 0.22, "linewidth": 0.0}
 
-_SETTINGS = {
+_SETTINGS: dict[Any, Any] = {
     "font.size": 9.0,
     "font.family": "DejaVu Sans",
     "axes.titlesize": 10.0,

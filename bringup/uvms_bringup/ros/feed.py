@@ -4,6 +4,7 @@ import os
 import time
 from collections import Counter, defaultdict
 from pathlib import Path
+from typing import Any
 
 from rclpy.action import ActionClient
 from rclpy.node import Node
@@ -212,7 +213,7 @@ class Feeding:
         if self.node != "motion_planner" or goal is None:
             return
         action = _action_of(goal)
-        cls = action_class(action)
+        cls: Any = action_class(action)
         client = ActionClient(self._feeder, cls, action.name)
         deadline = time.monotonic() + START_PATIENCE_S
         while not client.server_is_ready():

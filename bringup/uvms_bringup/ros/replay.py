@@ -4,7 +4,6 @@ import os
 import time
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -149,10 +148,8 @@ def _publish_all(
 
 def _end_of(run: RunLog) -> int:
     end = 0
-    names: list[Any] | None = [run.full_name(topics.CLOCK)]
-    if names[0] not in run.topics:
-        names = None
-    for _, stamp, _ in run.raw(names):
+    clock = run.full_name(topics.CLOCK)
+    for _, stamp, _ in run.raw([clock] if clock in run.topics else None):
         end = max(end, stamp)
     if not end:
         raise LogError(f"log {run.path}: has no messages to play")

@@ -9,6 +9,9 @@ from dataclasses import dataclass
 
 from uvms_dynamics import diagnostics, signals
 
+Kind = type
+"""The class of a signal; `Topic` has a field named `type`."""
+
 WORLD_FRAME = "map_ned"
 BODY_FRAME = "base_link_fsd"
 IMU_FRAME = "imu_link_fsd"
@@ -38,7 +41,7 @@ class Topic:
 
     name: str
     type: str
-    signal: type | None = None
+    signal: Kind | None = None
     frame: str = ""
     child_frame: str = ""
     qos: Qos = Qos()
@@ -137,7 +140,7 @@ class Action:
 
     name: str
     type: str
-    goal: type
+    goal: Kind
 
 
 FOLLOW_END_EFFECTOR_PATH = Action(

@@ -40,7 +40,7 @@ _CONVERSIONS: dict[type, tuple[To, From]] = {
 
 def _kind(topic: Topic | Action) -> type:
     kind = topic.goal if isinstance(topic, Action) else topic.signal
-    if kind is None or topic is TF:
+    if kind is None or topic.name == TF.name:
         raise SignalError(f"{topic.name}: carries no signal")
     return kind
 
@@ -50,7 +50,7 @@ def to_message(topic: Topic | Action, signal: Any, names: Sequence[str] = ()) ->
 
     `names` are those of the joints or thrusters, for the messages that carry them.
     """
-    if topic is TF:
+    if topic.name == TF.name:
         return motion.tf_to(TF, signal, names)
     return _CONVERSIONS[_kind(topic)][0](topic, signal, names)
 
