@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_planner.jit import inner, kernel
+from uvms_planner.jit import kernel
 from uvms_planner.projection import configuration_jacobian, weighted_step
 
 DIFFERENCE_S = 1e-3
@@ -35,17 +35,27 @@ def meet(model, problem, end, tool_rate, tool_acceleration, rate, acceleration):
     _meet(problem, jacobian, tool_rate, rate)
     after = configuration_jacobian(model, end + DIFFERENCE_S * rate)
     before = configuration_jacobian(model, end - DIFFERENCE_S * rate)
-    wanted = tool_acceleration - (after - before) @ rate / (2 * DIFFERENCE_S)
+    wanted = tool_acceleration.copy()
+    _subtract_product((after - before) / (2 * DIFFERENCE_S), rate, wanted)
     _meet(problem, jacobian, wanted, acceleration)
 
 
-@inner
+@kernel
 def _meet(problem, jacobian, wanted, vector):
     """Change `vector` (m,) in place the least way so that J vector = wanted."""
     equations = 6 if problem.oriented else 3
     free = problem.readiness > 0.0
     step = np.zeros_like(vector)
     for _ in range(2):  # the second takes away what the damping leaves
-        error = wanted - jacobian @ vector
+        error = wanted.copy()
+        _subtract_product(jacobian, vector, error)
         weighted_step(jacobian, error, problem.readiness, free, problem.damping, equations, step)
         vector += step
+
+
+@kernel
+def _subtract_product(matrix, vector, out):
+    """Out - matrix vector, in place."""
+    for a in range(matrix.shape[0]):
+        for i in range(matrix.shape[1]):
+            out[a] -= matrix[a, i] * vector[i]

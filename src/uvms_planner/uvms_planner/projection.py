@@ -49,7 +49,12 @@ def tool_pose(model, configuration):
 @kernel
 def rotation_error(desired, actual):
     """Rotation vector (3,), world axes, that turns `actual` (3, 3) into `desired` (3, 3)."""
-    return quat_to_rotation_vector(matrix_to_quat(desired @ actual.T))
+    turn = np.zeros((3, 3))
+    for row in range(3):
+        for column in range(3):
+            for k in range(3):
+                turn[row, column] += desired[row, k] * actual[column, k]
+    return quat_to_rotation_vector(matrix_to_quat(turn))
 
 
 @inner
