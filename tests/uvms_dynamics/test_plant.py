@@ -162,8 +162,12 @@ def test_divergence_is_named_with_time_and_state():
         ({"initial_joints_deg": (1.0, 2.0)}, "initial_joints_deg: has 2 values for 4 joints"),
         (
             {"step_s": 0.05},
-            "step_s: 0.05 s is unstable with the friction (raise coulomb_width_deg_s) of"
-            " arm.joints.0 (swing) on its rotor inertia; allowed: at most 0.0181 s",
+            "step_s: 0.05 s is unstable with the friction of arm.joints.0 (swing) on its rotor"
+            " inertia (raise coulomb_width_deg_s); allowed: at most 0.0181 s",
+        ),
+        (
+            {"initial_joints_deg": (0.0, 120.0, 0.0, 0.0)},
+            "initial_joints_deg: 120 of joint shoulder is outside its limits -30 to 100",
         ),
     ],
 )
@@ -179,3 +183,31 @@ def test_a_step_near_the_longest_that_is_allowed_is_stable():
     )
     truth = run(plant_of(slow_sensors, step_s=0.0125, control_period_s=0.05), 400)
     assert np.abs(truth.joints.velocity).max() < 0.5
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "text"),
+    [
+        (
+            "arm.joints.wrist.stop_stiffness_nm_rad",
+            1e6,
+            "step_s: 0.005 s is unstable with the stop_stiffness_nm_rad of arm.joints.3 (wrist);"
+            " allowed: at most 0.000631 s",
+        ),
+        (
+            "thrusters.main.time_constant_s",
+            1e-3,
+            "step_s: 0.005 s is unstable with the time_constant_s of thrusters.0 (main);"
+            " allowed: at most 0.00278 s",
+        ),
+        (
+            "sensors.dvl.rate_hz",
+            7.0,
+            "sensors.dvl.rate_hz: its period of 0.142857 s must be a multiple of step_s = 0.005 s",
+        ),
+    ],
+)
+def test_a_vehicle_that_this_step_cannot_run(path, value, text):
+    with pytest.raises(ConfigError) as fault:
+        plant_of(load_vehicle(overrides={path: value}))
+    assert str(fault.value) == text

@@ -14,8 +14,9 @@ import shutil
 import time
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import Any
 
-from numba import config
+import numba
 
 PACKAGES = ("uvms_dynamics", "uvms_observer", "uvms_planner", "uvms_control")
 """Packages with kernels; those that are not installed do not count."""
@@ -38,6 +39,7 @@ def fingerprint(folders: Iterable[Path]) -> str:
 def use_own_cache() -> None:
     """Point numba to the folder of these sources; to be called before any kernel is defined."""
     parent = Path(__file__).parent / "__pycache__"
+    config: Any = numba.config  # its settings come from the environment, unknown to mypy
     if config.CACHE_DIR or not os.access(parent if parent.exists() else parent.parent, os.W_OK):
         return
     current = parent / f"kernels-{fingerprint(_folders())}"

@@ -49,32 +49,43 @@ def steps_in(period: int, config: PlantConfig, what: str) -> int:
 
 
 def initial_joints(vehicle: Vehicle, config: PlantConfig) -> Array:
-    """Joint angles (n,) at the start, rad; ConfigError for a wrong number of them."""
+    """Joint angles (n,) at the start, rad; ConfigError for a wrong number or beyond a limit."""
     degrees = config.initial_joints_deg or vehicle.arm.stowed_deg
     if len(degrees) != vehicle.n_joints:
         raise ConfigError(
             f"initial_joints_deg: has {len(degrees)} values for {vehicle.n_joints} joints"
         )
+    for joint, angle in zip(vehicle.arm.joints, degrees, strict=True):
+        if not joint.lower_deg <= angle <= joint.upper_deg:
+            raise ConfigError(
+                f"initial_joints_deg: {angle:g} of joint {joint.name} is outside its limits"
+                f" {joint.lower_deg:g} to {joint.upper_deg:g}"
+            )
     return np.radians(degrees)
 
 
 def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
-    """Raise ConfigError where a joint's friction or stop is too stiff for the integration step.
+    """Raise ConfigError where the step is too long for a joint's friction or stop, or a thruster.
 
     A joint moves at least its rotor, so slope / rotor inertia bounds its eigenvalue from above.
     """
     for i, joint in enumerate(vehicle.arm.joints):
+        where, rotor = f"arm.joints.{i} ({joint.name})", joint.rotor_inertia_kg_m2
         slope = joint.viscous_friction_nm_s
         slope += joint.coulomb_friction_nm / np.radians(joint.coulomb_width_deg_s)
-        damping = config.step_s * slope / joint.rotor_inertia_kg_m2
-        stop = config.step_s * np.sqrt(joint.stop_stiffness_nm_rad / joint.rotor_inertia_kg_m2)
-        for value, bound, cause in (
-            (damping, _STABLE_REAL, "friction (raise coulomb_width_deg_s)"),
-            (stop, _STABLE_IMAGINARY, "stop_stiffness_nm_rad"),
-        ):
-            if value > bound:
-                raise ConfigError(
-                    f"step_s: {config.step_s:g} s is unstable with the {cause} of"
-                    f" arm.joints.{i} ({joint.name}) on its rotor inertia;"
-                    f" allowed: at most {config.step_s * bound / value:.3g} s"
-                )
+        stop = np.sqrt(joint.stop_stiffness_nm_rad / rotor)
+        friction = f"friction of {where} on its rotor inertia (raise coulomb_width_deg_s)"
+        _check_rate(config, slope / rotor, _STABLE_REAL, friction)
+        _check_rate(config, stop, _STABLE_IMAGINARY, f"stop_stiffness_nm_rad of {where}")
+    for i, thruster in enumerate(vehicle.thrusters):
+        lag = f"time_constant_s of thrusters.{i} ({thruster.name})"
+        _check_rate(config, 1.0 / thruster.time_constant_s, _STABLE_REAL, lag)
+
+
+def _check_rate(config: PlantConfig, rate: float, bound: float, cause: str) -> None:
+    """Refuse a step that is unstable with an eigenvalue of this size, 1/s."""
+    if config.step_s * rate > bound:
+        raise ConfigError(
+            f"step_s: {config.step_s:g} s is unstable with the {cause};"
+            f" allowed: at most {bound / rate:.3g} s"
+        )
