@@ -3,7 +3,7 @@
 import numpy as np
 
 from uvms_dynamics import restoring_wrench
-from uvms_planner.jit import inner
+from uvms_dynamics.kernels.jit import inner
 
 
 @inner

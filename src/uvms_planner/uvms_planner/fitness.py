@@ -3,8 +3,8 @@
 import numpy as np
 
 from uvms_dynamics import coupling_wrench, restoring_wrench
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import attitude_violation
-from uvms_planner.jit import inner, kernel
 from uvms_planner.problem import VEHICLE, yaw_quaternion
 from uvms_planner.projection import project, within_tolerance
 

@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge
 from uvms_planner.genome import decode, encode
-from uvms_planner.jit import inner, kernel
 from uvms_planner.refine import refine
 
 SEED_REFINEMENTS = 1

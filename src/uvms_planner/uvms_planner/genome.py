@@ -7,7 +7,7 @@ middle of the range, is the place where all bits flip at once.
 
 import numpy as np
 
-from uvms_planner.jit import kernel
+from uvms_dynamics.kernels.jit import kernel
 
 
 @kernel

@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array, PathGoal
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
-from uvms_planner.jit import kernel
 from uvms_planner.path import EndEffectorPath, JoinedPath, PathSample
 from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project, within_tolerance

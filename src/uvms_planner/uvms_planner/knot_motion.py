@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_planner.jit import kernel
+from uvms_dynamics.kernels.jit import kernel
 from uvms_planner.projection import configuration_jacobian, weighted_step
 
 DIFFERENCE_S = 1e-3

@@ -1,6 +1,6 @@
 """Small dense solver for kernels, without temporaries."""
 
-from uvms_planner.jit import kernel
+from uvms_dynamics.kernels.jit import kernel
 
 
 @kernel

@@ -5,9 +5,9 @@ Without it the bits of the last improvement would shake the vehicle from step to
 
 import numpy as np
 
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge, judged_disturbance
-from uvms_planner.jit import inner, kernel
 from uvms_planner.linear import solve_in_place
 from uvms_planner.projection import configuration_jacobian, tool_error
 
