@@ -80,11 +80,18 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
                 rate = thrust_rate(limit, lag, slew, i, thrust[i], thrust_command[i])
                 stage[k, JOINTS + 2 * n + i] = rate
             if k == 0:
-                states[s, :] = x
-                rates[s, :] = stage[0]
+                _record(x, stage, states, rates, s)
                 if s == last:
                     return
         _combine_stages(x, stage, quat, step)
+
+
+@inner
+def _record(x, stage, states, rates, s):
+    """Rows s: the state and its derivative (slices would drag in numba's text formatting)."""
+    for i in range(x.shape[0]):
+        states[s, i] = x[i]
+        rates[s, i] = stage[0, i]
 
 
 @inner

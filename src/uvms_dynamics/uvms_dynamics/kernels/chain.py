@@ -18,7 +18,8 @@ from uvms_dynamics.kernels.spatial import cross, load3
 from uvms_dynamics.rotations import quat_to_matrix
 
 # A frame in the body frame is a row of twelve: its rotation row by row, then its origin.
-_ORIGIN = 9
+_FIRST = np.int64(0)
+_ORIGIN = np.int64(9)
 _FRAME_COLUMNS = 12
 
 
@@ -63,7 +64,7 @@ def _apply(frames, i, x, y, z):
 @inner
 def _tool_position(tool, frames, n):
     """Tool in the body frame."""
-    p0, p1, p2 = load3(tool, TOOL_POSITION, 0)
+    p0, p1, p2 = load3(tool, TOOL_POSITION, _FIRST)
     x0, x1, x2 = _apply(frames, n, p0, p1, p2)
     return frames[n, _ORIGIN] + x0, frames[n, _ORIGIN + 1] + x1, frames[n, _ORIGIN + 2] + x2
 
@@ -103,7 +104,7 @@ def end_effector_jacobian(model, quat, q):
     jacobian = np.zeros((6, 6 + n))
     unit = np.eye(3)
     for k in range(3):
-        a0, a1, a2 = load3(unit, k, 0)
+        a0, a1, a2 = load3(unit, k, _FIRST)
         _column(jacobian, k, body, a0, a1, a2, 0.0, 0.0, 0.0)
         l0, l1, l2 = cross(a0, a1, a2, x, y, z)
         _column(jacobian, 3 + k, body, l0, l1, l2, a0, a1, a2)

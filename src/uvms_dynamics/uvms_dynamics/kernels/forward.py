@@ -10,7 +10,9 @@ from uvms_dynamics.kernels.layout import (
     AXIS_FORCE,
     DOWN,
     FORCE,
+    HULL,
     INVERSE,
+    LAST_ROW,
     REST,
     ROTOR,
     VELOCITY,
@@ -57,11 +59,11 @@ def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     bodies, joints = model.bodies, model.joints
     strips, start, coefficient = model.strips, model.strip_start, model.drag_coefficient
     k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    store3(work, 0, DOWN, k0, k1, k2)
-    store(work, 0, VELOCITY, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
-    bias_force(bodies, work, 0)
+    store3(work, HULL, DOWN, k0, k1, k2)
+    store(work, HULL, VELOCITY, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
+    bias_force(bodies, work, HULL)
     _hull_forces(model.hull, tau, work)
-    copy_inertia(bodies, work, 0)
+    copy_inertia(bodies, work, HULL)
     for i in range(1, n + 1):  # outward: velocities and bias forces
         set_rotation(joints, work, i, q[i - 1])
         carry_down(work, i)
@@ -93,7 +95,7 @@ def _release_joint(work, i, torque, rotor):
     U = I S, D = S^T U + rotor, u = tau - S^T p. The joint's motion S is a turn about z, so U is
     the last column of I.
     """
-    u0, u1, u2, u3, u4, u5 = load(work, i, 30)  # last row: the matrix is symmetric
+    u0, u1, u2, u3, u4, u5 = load(work, i, LAST_ROW)  # the matrix is symmetric
     inverse = 1.0 / (u5 + rotor)
     store(work, i, AXIS_FORCE, u0, u1, u2, u3, u4, u5)
     work[i, INVERSE] = inverse

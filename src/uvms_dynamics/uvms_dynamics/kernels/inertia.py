@@ -1,7 +1,7 @@
 """Move a general symmetric 6x6 inertia to the parent's frame, in scalars."""
 
 from uvms_dynamics.kernels.jit import inner
-from uvms_dynamics.kernels.layout import TREE_POSITION
+from uvms_dynamics.kernels.layout import ANGULAR_BLOCK, LINEAR_BLOCK, TREE_POSITION
 from uvms_dynamics.kernels.spatial import cross, load3, turn
 
 
@@ -21,8 +21,8 @@ def add_to_parent(joints, work, i):
     blocks are computed; the parent gets a full symmetric matrix.
     """
     p0, p1, p2 = load3(joints, i, TREE_POSITION)
-    a00, a01, a02, a11, a12, a22 = _turned_symmetric(work, i, 0)
-    c00, c01, c02, c11, c12, c22 = _turned_symmetric(work, i, 21)
+    a00, a01, a02, a11, a12, a22 = _turned_symmetric(work, i, LINEAR_BLOCK)
+    c00, c01, c02, c11, c12, c22 = _turned_symmetric(work, i, ANGULAR_BLOCK)
     b00, b01, b02, b10, b11, b12, b20, b21, b22 = _turned_coupling(work, i)
     # rows of -A [p]x are p x (rows of A)
     d00, d01, d02 = cross(p0, p1, p2, a00, a01, a02)
@@ -41,11 +41,9 @@ def add_to_parent(joints, work, i):
     g02, g12, g22 = cross(p0, p1, p2, b02, b12, b22)
     c00, c01, c02 = c00 + e00 + g00, c01 + e01 + g01, c02 + e02 + g02
     c11, c12, c22 = c11 + e11 + g11, c12 + e12 + g12, c22 + e22 + g22
-    _add_symmetric(work, i - 1, 0, a00, a01, a02, a11, a12, a22)
-    _add_symmetric(work, i - 1, 21, c00, c01, c02, c11, c12, c22)
-    _add_coupling(work, i - 1, 0, b00, b01, b02)
-    _add_coupling(work, i - 1, 1, b10, b11, b12)
-    _add_coupling(work, i - 1, 2, b20, b21, b22)
+    _add_symmetric(work, i - 1, LINEAR_BLOCK, a00, a01, a02, a11, a12, a22)
+    _add_symmetric(work, i - 1, ANGULAR_BLOCK, c00, c01, c02, c11, c12, c22)
+    _add_coupling(work, i - 1, b00, b01, b02, b10, b11, b12, b20, b21, b22)
 
 
 @inner
@@ -88,10 +86,12 @@ def _add_symmetric(work, i, k, s00, s01, s02, s11, s12, s22):
 
 
 @inner
-def _add_coupling(work, i, row, x, y, z):
-    work[i, 6 * row + 3] += x
-    work[i, 6 * row + 4] += y
-    work[i, 6 * row + 5] += z
-    work[i, 18 + row] += x
-    work[i, 24 + row] += y
-    work[i, 30 + row] += z
+def _add_coupling(work, i, b00, b01, b02, b10, b11, b12, b20, b21, b22):
+    """Add B to the upper right block and B^T to the lower left one."""
+    row = work[i]
+    row[3], row[4], row[5] = row[3] + b00, row[4] + b01, row[5] + b02
+    row[9], row[10], row[11] = row[9] + b10, row[10] + b11, row[11] + b12
+    row[15], row[16], row[17] = row[15] + b20, row[16] + b21, row[17] + b22
+    row[18], row[19], row[20] = row[18] + b00, row[19] + b10, row[20] + b20
+    row[24], row[25], row[26] = row[24] + b01, row[25] + b11, row[26] + b21
+    row[30], row[31], row[32] = row[30] + b02, row[31] + b12, row[32] + b22

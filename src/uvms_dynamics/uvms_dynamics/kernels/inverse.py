@@ -4,7 +4,7 @@ import numpy as np
 
 from uvms_dynamics.kernels.hull import damping
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import ACCELERATION, DOWN, FORCE, ROTOR, VELOCITY
+from uvms_dynamics.kernels.layout import ACCELERATION, DOWN, FORCE, HULL, ROTOR, VELOCITY
 from uvms_dynamics.kernels.motion import (
     bias_force,
     carry_down,
@@ -36,10 +36,10 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     n = q.shape[0]
     work = make_workspace(n)
     k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    store3(work, 0, DOWN, k0, k1, k2)
+    store3(work, HULL, DOWN, k0, k1, k2)
     forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
-    bias_force(model.bodies, work, 0)
-    _inertia_force(model.bodies, work, 0)
+    bias_force(model.bodies, work, HULL)
+    _inertia_force(model.bodies, work, HULL)
     _carry_inward(model.joints, work, n)
     out = np.empty(6 + n)
     for i in range(1, n + 1):
@@ -59,9 +59,9 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """
     n = q.shape[0]
     work = make_workspace(n)
-    store3(work, 0, DOWN, 0.0, 0.0, 0.0)  # no down, no weight
+    store3(work, HULL, DOWN, 0.0, 0.0, 0.0)  # no down, no weight
     forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
-    store(work, 0, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    store(work, HULL, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     _carry_inward(model.joints, work, n)
     out = np.empty(6)
     for k in range(6):

@@ -4,7 +4,7 @@ import numpy as np
 
 from uvms_dynamics.kernels.inertia import add_to_parent, copy_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import ROTOR
+from uvms_dynamics.kernels.layout import HULL, LAST_ROW, ROTOR
 from uvms_dynamics.kernels.motion import make_workspace
 from uvms_dynamics.kernels.spatial import force_to_parent, load, set_rotation
 
@@ -19,7 +19,7 @@ def mass_matrix(model, q):
     n = q.shape[0]
     bodies, joints = model.bodies, model.joints
     work, matrix = make_workspace(n), np.empty((6 + n, 6 + n))
-    copy_inertia(bodies, work, 0)
+    copy_inertia(bodies, work, HULL)
     for i in range(1, n + 1):
         set_rotation(joints, work, i, q[i - 1])
         copy_inertia(bodies, work, i)
@@ -35,7 +35,7 @@ def mass_matrix(model, q):
 @inner
 def _joint_row(joints, work, i, matrix):
     """Row and column of joint i: the force of a unit acceleration, carried to the base."""
-    f0, f1, f2, n0, n1, n2 = load(work, i, 30)
+    f0, f1, f2, n0, n1, n2 = load(work, i, LAST_ROW)
     matrix[5 + i, 5 + i] = n2 + joints[i, ROTOR]
     for j in range(i, 0, -1):
         f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, j, f0, f1, f2, n0, n1, n2)

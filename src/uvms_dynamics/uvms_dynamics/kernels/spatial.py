@@ -8,6 +8,8 @@ Notation: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 2.
 
 import math
 
+import numpy as np
+
 from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.kernels.layout import (
     NET_MOMENT,
@@ -17,6 +19,8 @@ from uvms_dynamics.kernels.layout import (
     TREE_POSITION,
     TREE_ROTATION,
 )
+
+_ROW_0, _ROW_1, _ROW_2, _ROW_3, _ROW_4, _ROW_5 = (np.int64(6 * row) for row in range(6))
 
 
 @inner
@@ -122,12 +126,12 @@ def force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2):
 def times(table, i, v0, v1, v2, w0, w1, w2):
     """Momentum I v, with the 6x6 inertia in the first 36 columns of row i."""
     return (
-        _row(table, i, 0, v0, v1, v2, w0, w1, w2),
-        _row(table, i, 6, v0, v1, v2, w0, w1, w2),
-        _row(table, i, 12, v0, v1, v2, w0, w1, w2),
-        _row(table, i, 18, v0, v1, v2, w0, w1, w2),
-        _row(table, i, 24, v0, v1, v2, w0, w1, w2),
-        _row(table, i, 30, v0, v1, v2, w0, w1, w2),
+        _row(table, i, _ROW_0, v0, v1, v2, w0, w1, w2),
+        _row(table, i, _ROW_1, v0, v1, v2, w0, w1, w2),
+        _row(table, i, _ROW_2, v0, v1, v2, w0, w1, w2),
+        _row(table, i, _ROW_3, v0, v1, v2, w0, w1, w2),
+        _row(table, i, _ROW_4, v0, v1, v2, w0, w1, w2),
+        _row(table, i, _ROW_5, v0, v1, v2, w0, w1, w2),
     )
 
 
