@@ -1,0 +1,69 @@
+"""One tick of the whole loop in process, part by part, along the manipulation."""
+
+import time
+from collections import defaultdict
+from collections.abc import Iterator
+from typing import Any
+
+import numpy as np
+from figures import Figure, Target
+
+from uvms_bringup.loop import Loop
+from uvms_bringup.scenario import load_scenario
+
+PARTS = {
+    "plant": ("step", "sense", "truth"),
+    "navigation": ("step",),
+    "planner": ("step",),
+    "observer": ("step",),
+    "controller": ("step",),
+    "allocator": ("step",),
+}
+TICKS, WARM = 1200, 100
+
+
+def measure(full: bool) -> Iterator[Figure]:
+    """A part's value is its mean time in a tick; its ratio is its share of the whole tick.
+
+    Medians of blocks of one second, since the machine's noise comes in bursts; the planner works in
+    one tick of ten.
+    """
+    scenario = load_scenario("manipulation")
+    vehicle = scenario.load_vehicle()
+    loop = Loop(scenario, vehicle)
+    spent: dict[str, float] = defaultdict(float)
+    for part, methods in PARTS.items():
+        for method in methods:
+            _watch(getattr(loop, part), method, part, spent)
+    rows = []
+    for index in range(WARM + TICKS):
+        spent.clear()
+        began = time.perf_counter()
+        tick = loop.tick()
+        if index == 0:
+            loop.planner.accept(scenario.goal.build(vehicle, scenario.plant))
+        loop.advance(tick)
+        rows.append([time.perf_counter() - began, *(spent[part] for part in PARTS)])
+    blocks = np.array(rows[WARM:]).reshape(-1, 20, 1 + len(PARTS)).mean(axis=1)
+    whole, *parts = np.median(blocks, axis=0)
+    factor = float(scenario.plant.control_period_s / whole)
+    yield Figure(
+        "loop", factor, "x real time", "real time, one core", factor, Target("value", ">=", 30.0)
+    )
+    yield Figure("loop_tick", 1e6 * whole, "us")
+    for part, seconds in zip(PARTS, parts, strict=True):
+        share = float(seconds / whole)
+        yield Figure(f"loop_tick_{part}", 1e6 * float(seconds), "us", "the whole tick", share)
+
+
+def _watch(target: Any, method: str, part: str, spent: dict[str, float]) -> None:
+    """Let a method add its time to `spent[part]`."""
+    work = getattr(target, method)
+
+    def timed(*arguments: Any) -> Any:
+        began = time.perf_counter()
+        result = work(*arguments)
+        spent[part] += time.perf_counter() - began
+        return result
+
+    setattr(target, method, timed)

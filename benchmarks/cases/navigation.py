@@ -1,0 +1,55 @@
+"""The navigation filter over 900 s of sensor samples, against real time."""
+
+import time
+from collections.abc import Iterator
+
+import numpy as np
+from figures import Figure, Target
+
+from uvms_dynamics import Plant, PlantConfig, load_vehicle
+from uvms_dynamics.signals import JointCommand, Odometry, ThrusterCommand
+from uvms_observer import NavigationConfig, NavigationFilter
+
+SECONDS, BATCH = 900.0, 200
+
+
+def measure(full: bool) -> Iterator[Figure]:
+    """All sensors at their rates while the vehicle drifts about; the plant's own time is left out.
+
+    The factor is the median over batches of 10 s, since the machine's noise comes in bursts.
+    """
+    vehicle, config = load_vehicle(), PlantConfig()
+    plant = Plant(vehicle, config, seed=1)
+    navigation = NavigationFilter(vehicle, NavigationConfig())
+    seconds, errors = [], []
+    for _ in range(round(SECONDS / config.control_period_s)):
+        frame = plant.sense()
+        began = time.perf_counter()
+        estimate = navigation.step(plant.stamp, frame.imu, frame.dvl, frame.pressure, frame.gps)
+        seconds.append(time.perf_counter() - began)
+        errors.append(estimate.position - plant.truth().odometry.position)
+        thrust, effort = _push(plant.stamp, vehicle.n_thrusters, vehicle.n_joints)
+        plant.step(ThrusterCommand(plant.stamp, thrust), JointCommand(plant.stamp, effort))
+    batches = np.array(seconds[: len(seconds) // BATCH * BATCH]).reshape(-1, BATCH).sum(axis=1)
+    factor = float(np.median(BATCH * config.control_period_s / batches))
+    yield Figure(
+        "navigation_filter", factor, "x real time", "real time, one core", factor,
+        Target("value", ">=", 100.0),
+    )  # fmt: skip
+    yield from _drift(np.linalg.norm(errors, axis=1)[-1], estimate)
+
+
+def _push(stamp: int, m: int, n: int):
+    t = 1e-9 * stamp
+    thrust = np.zeros(m)
+    thrust[0] = 2.0 * np.sin(0.05 * t)  # to and fro
+    return thrust, np.zeros(n)
+
+
+def _drift(error: float, estimate: Odometry) -> Iterator[Figure]:
+    """Submerged there is no fix: the position's error grows, as the filter itself expects."""
+    expected = float(np.sqrt(np.trace(estimate.pose_covariance[:3, :3])))
+    yield Figure(
+        "navigation_drift_900s", float(error), "m", "the filter's own standard deviation",
+        float(error) / expected, Target("ratio", "<=", 3.0),
+    )  # fmt: skip

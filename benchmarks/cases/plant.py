@@ -1,0 +1,33 @@
+"""The plant with its sensors, one control period after the other, against real time."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from figures import Figure, Target
+from paired import seconds_per_call
+
+from uvms_dynamics import Plant, PlantConfig, load_vehicle
+from uvms_dynamics.signals import JointCommand, ThrusterCommand
+
+PERIODS, ROUNDS = 100, 9
+
+
+def measure(full: bool) -> Iterator[Figure]:
+    """Runge-Kutta at 200 Hz and all sensors at their rates, under steady small commands."""
+    vehicle, config = load_vehicle(), PlantConfig()
+    plant = Plant(vehicle, config, seed=1)
+    thrust = np.linspace(-1.0, 1.0, vehicle.n_thrusters)
+    effort = np.zeros(vehicle.n_joints)
+
+    def period() -> None:
+        plant.step(ThrusterCommand(plant.stamp, thrust), JointCommand(plant.stamp, effort))
+        plant.sense()
+        plant.truth()
+
+    period()
+    seconds = np.array([seconds_per_call(period, PERIODS) for _ in range(ROUNDS)])
+    factor = float(np.median(config.control_period_s / seconds))
+    yield Figure(
+        "plant_and_sensors", factor, "x real time", "real time, one core", factor,
+        Target("value", ">=", 100.0),
+    )  # fmt: skip

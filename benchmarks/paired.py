@@ -1,0 +1,66 @@
+"""Paired timing: ours and its references take turns in one process, round by round.
+
+Machines are noisy, and the noise comes and goes in seconds. Within a round of some milliseconds
+both sides meet the same machine, so that the ratio of a round means something where two separate
+times do not. The median of the rounds' ratios is what counts.
+"""
+
+import gc
+import statistics
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+ROUNDS = 31
+ROUND_S = 0.004
+"""About how long each side works in a round."""
+
+Work = Callable[[], object]
+
+
+@dataclass(frozen=True)
+class Timing:
+    """Least time of a call of ours in s, and the speed-up against each reference by name."""
+
+    seconds: float
+    speedup: dict[str, float]
+
+
+def paired(ours: Work, references: Mapping[str, Work], rounds: int = ROUNDS) -> Timing:
+    """Time `ours` against each of `references`.
+
+    A side's calls per round are chosen so that it works for about ROUND_S; every other round goes
+    through the sides backwards, so that none is always first.
+    """
+    sides = {"": ours, **references}
+    counts = {name: _calls_per_round(work) for name, work in sides.items()}
+    times: dict[str, list[float]] = {name: [] for name in sides}
+    order = list(sides)
+    gc.collect()
+    gc.disable()
+    try:
+        for _ in range(rounds):
+            for name in order:
+                times[name].append(seconds_per_call(sides[name], counts[name]))
+            order.reverse()
+    finally:
+        gc.enable()
+    speedup = {
+        name: statistics.median(b / a for a, b in zip(times[""], times[name], strict=True))
+        for name in references
+    }
+    return Timing(min(times[""]), speedup)
+
+
+def seconds_per_call(work: Work, count: int) -> float:
+    """Mean time of `count` calls in a row."""
+    began = time.perf_counter()
+    for _ in range(count):
+        work()
+    return (time.perf_counter() - began) / count
+
+
+def _calls_per_round(work: Work) -> int:
+    work()  # compiles, and fills caches
+    once = min(seconds_per_call(work, 1) for _ in range(3))
+    return max(1, round(ROUND_S / once))

@@ -1,0 +1,32 @@
+"""The dry vehicle in Pinocchio, the reference for rigid dynamics."""
+
+import numpy as np
+import pinocchio as pin
+
+from uvms_dynamics import Vehicle
+from uvms_dynamics.model import distal_pose
+from uvms_dynamics.vehicle.frames import mounting_pose
+
+
+def pinocchio_model(vehicle: Vehicle) -> pin.Model:
+    """A free flyer with the arm on it; the world's z points down."""
+    model = pin.Model()
+    model.gravity.linear = np.array([0.0, 0.0, vehicle.environment.gravity_m_s2])
+    parent = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "hull")
+    model.appendBodyToJoint(parent, _inertia(vehicle.hull), pin.SE3.Identity())
+    placement = _se3(mounting_pose(vehicle.arm.base))
+    for joint, link in zip(vehicle.arm.joints, vehicle.arm.links, strict=True):
+        offset = pin.SE3(pin.utils.rotate("z", np.radians(joint.offset_deg)), np.zeros(3))
+        parent = model.addJoint(parent, pin.JointModelRZ(), placement * offset, joint.name)
+        model.appendBodyToJoint(parent, _inertia(link), _se3(distal_pose(joint)))
+        placement = _se3(distal_pose(joint))
+    model.armature[6:] = [joint.rotor_inertia_kg_m2 for joint in vehicle.arm.joints]
+    return model
+
+
+def _inertia(body) -> pin.Inertia:
+    return pin.Inertia(body.mass_kg, np.array(body.cg_m), np.array(body.inertia_kg_m2))
+
+
+def _se3(pose) -> pin.SE3:
+    return pin.SE3(pose[1], np.array(pose[0]))

@@ -1,0 +1,90 @@
+"""Measure speed and quality of UVMS: one JSON object a line on standard output.
+
+Keys: name, value, unit, reference (what it is compared with, in words), ratio, target, met.
+For speed, `ratio` says how many times faster than the reference we are; both take turns in one
+process. For errors and disturbances it is our value over the reference's. A missed target is said
+by `"met": false`; the exit code is 0 all the same, so that a measurement is never lost.
+"""
+
+import argparse
+import os
+import sys
+import time
+from collections.abc import Iterator
+from importlib import import_module
+from pathlib import Path
+from types import ModuleType
+
+# One core for each side of a comparison, whatever a BLAS library finds on the machine.
+for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
+    os.environ.setdefault(_name, "1")
+
+CASES = tuple(
+    path.stem for path in sorted((Path(__file__).parent / "cases").glob("[!_]*.py"))
+)  # one benchmark a file: `measure(full)` yields its figures
+
+
+def main() -> int:
+    """Run the benchmarks asked for, all of them by default."""
+    options = parser().parse_args()
+    unknown = sorted(set(options.names) - set(CASES))
+    if unknown:
+        print(f"unknown: {', '.join(unknown)}; choose from {', '.join(CASES)}", file=sys.stderr)
+        return 2
+    if options.list:
+        for name in CASES:
+            print(f"{name:18s} {_summary(case(name))}")
+        return 0
+    began = time.perf_counter()
+    failed = [name for name in options.names or CASES if not _run(name, options.full)]
+    say(f"{time.perf_counter() - began:.0f} s in all")
+    if failed:
+        say(f"could not be measured: {', '.join(failed)}")
+    return 1 if failed else 0
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command line."""
+    made = argparse.ArgumentParser(
+        prog="benchmarks/run.py",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    made.add_argument("names", nargs="*", metavar="NAME", help=f"any of: {', '.join(CASES)}")
+    made.add_argument("--list", action="store_true", help="say what each benchmark measures")
+    made.add_argument("--full", action="store_true", help="whole runs instead of shortened ones")
+    return made
+
+
+def case(name: str) -> ModuleType:
+    """The module of a benchmark."""
+    return import_module(f"cases.{name}")
+
+
+def say(text: str) -> None:
+    """Progress, beside the figures."""
+    print(f"# {text}", file=sys.stderr, flush=True)
+
+
+def _summary(module: ModuleType) -> str:
+    return (module.__doc__ or "").strip().splitlines()[0]
+
+
+def _run(name: str, full: bool) -> bool:
+    """Print a benchmark's figures; False where it failed, which does not end the rest."""
+    began = time.perf_counter()
+    try:
+        module = case(name)
+        say(f"{name}: {_summary(module)}")
+        figures: Iterator = module.measure(full)
+        for figure in figures:
+            print(figure.line(), flush=True)
+    except Exception as fault:  # the others shall be measured all the same
+        say(f"{name} failed: {type(fault).__name__}: {fault}")
+        return False
+    say(f"{name}: {time.perf_counter() - began:.1f} s")
+    return True
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
