@@ -52,16 +52,18 @@ def bad_inputs():
         f"joint_states.velocity[0]: nan, {finite}",
     )
     yield (
-        (odometry, replace(joints, stamp=0), disturbance, reference),
-        f"joint_states: stamp 0 ns, expected the odometry's {TICK} ns",
+        (odometry, replace(joints, stamp=TICK - 600_000_000), disturbance, reference),
+        f"joint_states: stamp {TICK - 600_000_000} ns; it must lie within 0.5 s before the "
+        f"odometry's, {TICK} ns",
     )
     yield (
         (odometry, joints, Wrench(TICK, with_nan(np.zeros(6), 2)), reference),
         f"disturbance[2]: nan, {finite}",
     )
     yield (
-        (odometry, joints, Wrench(7, np.zeros(6)), reference),
-        f"disturbance: stamp 7 ns, expected the odometry's {TICK} ns",
+        (odometry, joints, Wrench(TICK + 7, np.zeros(6)), reference),
+        f"disturbance: stamp {TICK + 7} ns; it must lie within 0.5 s before the odometry's, "
+        f"{TICK} ns",
     )
     yield (
         (odometry, joints, disturbance, replace(reference, q=with_nan(reference.q, 0, 3))),

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 from hypothesis import given
 from hypothesis import strategies as st
+
 from uvms_dynamics.gate import Covering, Periodic, Previous, Same, TickGate
 
 DT = 50
@@ -82,17 +83,24 @@ def test_a_loop_that_the_plant_broke_by_time_out_closes_again():
     assert gated.abandoned == 1
 
 
-def test_real_time_goes_by_the_trigger_alone():
+def test_real_time_goes_by_the_trigger_with_the_newest_inputs():
     gated = gate(lockstep=False)
     gated.push("fast", 0, "f0")
-    (tick,) = gated.push("odometry", 0, "o0")
-    assert (tick["joints"], tick["fast"], tick["slow"]) == (None, ("f0",), ())
     gated.push("joints", 0, "j0")
+    (tick,) = gated.push("odometry", 0, "o0")
+    assert (tick["joints"], tick["fast"], tick["slow"]) == ("j0", ("f0",), ())
     assert gated.push("odometry", DT, "o1")[0]["joints"] == "j0"
+
+
+def test_real_time_waits_for_an_input_that_never_came():
+    gated = gate(lockstep=False)
+    assert gated.push("odometry", 0, "o0") == []
+    assert [tick.stamp for tick in gated.push("joints", 0, "j0")] == [0]
 
 
 def test_repeated_and_older_triggers_are_refused_and_counted():
     gated = gate(lockstep=False)
+    gated.push("joints", 0, "j0")
     assert len(gated.push("odometry", DT, "a")) == 1
     assert gated.push("odometry", DT, "b") == []
     assert gated.push("odometry", 0, "c") == []

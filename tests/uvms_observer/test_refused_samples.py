@@ -164,7 +164,7 @@ WRONG = {
     ),
     "stamps": (
         lambda o, j, w: (o, replace(j, stamp=5), w),
-        "joints.stamp is 5 ns; it must be the odometry's, 0 ns",
+        "joint_states: stamp 5 ns; it must lie within 0.5 s before the odometry's, 0 ns",
     ),
 }
 

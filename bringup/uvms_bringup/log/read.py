@@ -159,6 +159,8 @@ class RunLog:
             LogError: the log has no such topic, or no valid message of it.
         """
         signals = self.signals(topic)
+        if signals and isinstance(signals[0], int):  # a clock
+            return Series(np.array(signals, dtype=np.int64), {})
         if not signals or not is_dataclass(signals[0]):
             raise LogError(f"log {self.path}: has no valid message of {topic.name}")
         names = [field.name for field in fields(signals[0]) if field.name != "stamp"]

@@ -17,7 +17,7 @@ from uvms_dynamics.ros.node import qos_profile
 from uvms_dynamics.ros.spin import Spinner
 from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
 
-START_PATIENCE_S = 90.0
+START_PATIENCE_S = 180.0
 """Wall time for all nodes to come up and find each other; the first start compiles kernels."""
 ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0

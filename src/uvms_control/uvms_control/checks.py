@@ -1,7 +1,5 @@
 """Checks of incoming signals, done once at the boundary; messages name the value."""
 
-from collections.abc import Sequence
-
 import numpy as np
 
 from uvms_dynamics.errors import SignalError
@@ -27,10 +25,3 @@ def checked_quaternion(name: str, value: Array, tolerance: float = 1e-3) -> Arra
     if abs(norm - 1.0) > tolerance:
         raise SignalError(f"{name}: length {norm:.6g}, expected 1 within {tolerance:g}")
     return quaternion / norm
-
-
-def checked_same_stamp(stamp: int, others: Sequence[tuple[str, int]]) -> None:
-    """SignalError unless every named stamp equals the odometry's."""
-    for name, other in others:
-        if other != stamp:
-            raise SignalError(f"{name}: stamp {other} ns, expected the odometry's {stamp} ns")

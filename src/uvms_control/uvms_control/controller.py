@@ -3,7 +3,7 @@
 import numpy as np
 
 from uvms_control.arm_controller import ArmController, floating_inertia
-from uvms_control.checks import checked, checked_quaternion, checked_same_stamp
+from uvms_control.checks import checked, checked_quaternion
 from uvms_control.compensation import EndEffectorCompensation, JointCorrection
 from uvms_control.config import ControlConfig
 from uvms_control.reference import ReferenceSample, check_reference, sample_reference
@@ -18,6 +18,7 @@ from uvms_dynamics import (
     mass_matrix,
 )
 from uvms_dynamics.errors import SignalError
+from uvms_dynamics.freshness import check_age
 from uvms_dynamics.signals import (
     Array,
     JointCommand,
@@ -155,14 +156,14 @@ class Controller:
             raise SignalError(
                 f"odometry: stamp {odometry.stamp} ns, expected one after {self._stamp} ns"
             )
-        checked_same_stamp(odometry.stamp, [("joint_states", joints.stamp)])
+        check_age("joint_states", joints.stamp, odometry.stamp)
         checked("odometry.position", odometry.position, (3,))
         checked_quaternion("odometry.quaternion", odometry.quaternion)
         checked("odometry.nu", odometry.nu, (6,))
         checked("joint_states.position", joints.position, (self._n,))
         checked("joint_states.velocity", joints.velocity, (self._n,))
         if disturbance is not None:
-            checked_same_stamp(odometry.stamp, [("disturbance", disturbance.stamp)])
+            check_age("disturbance", disturbance.stamp, odometry.stamp)
             checked("disturbance", disturbance.wrench, (6,))
         if reference is not self._reference:
             check_reference(reference, self._n)

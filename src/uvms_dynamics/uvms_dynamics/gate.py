@@ -3,7 +3,8 @@
 Every node is driven by data. A `TickGate` collects the stamped inputs of one node and releases a
 tick when the inputs that are due at its stamp are there. In lockstep that makes a run repeatable,
 whatever the order in which messages arrive; in real time the trigger alone releases the tick, with
-the newest of the other inputs, so that a late node stops nobody. The gate knows no ROS and no clock.
+the newest of the other inputs, so that a late node stops nobody (only an input that a node has
+never had yet is waited for). The gate knows no ROS and no clock.
 """
 
 from collections import deque
@@ -33,6 +34,10 @@ class Input:
         """Whether all that is due at the stamp has come."""
         raise NotImplementedError
 
+    def known(self, stamp: int) -> bool:
+        """Whether there is a value to go on with, be it old."""
+        return self.newest(stamp) is not None
+
     def take(self, stamp: int) -> Any:
         """The value for the tick; what is older is forgotten."""
         value = self.newest(stamp)
@@ -58,6 +63,9 @@ class Previous(Input):
     def complete(self, stamp: int) -> bool:
         return any(when == stamp - self._period for when, _ in self._items)
 
+    def known(self, stamp: int) -> bool:
+        return True  # at the first tick there is none
+
     def take(self, stamp: int) -> Any:
         return super().take(stamp - 1)
 
@@ -73,6 +81,9 @@ class Periodic(Input):
     def complete(self, stamp: int) -> bool:
         due = stamp - stamp % self._period
         return due <= self._taken or (bool(self._items) and self._items[-1][0] >= due)
+
+    def known(self, stamp: int) -> bool:
+        return True  # a silent sensor stops nobody
 
     def take(self, stamp: int) -> tuple[Any, ...]:
         samples = []
@@ -106,7 +117,7 @@ class TickGate:
     Args:
         inputs: the node's inputs by name.
         trigger: the input whose stamps are the ticks.
-        lockstep: wait for all inputs of the stamp (True), or for the trigger alone (False).
+        lockstep: wait for all inputs of the stamp (True), or go on with the newest (False).
         in_loop: the plant waits for this node's answer, so a newer trigger means that it gave up
             the older tick by time-out. A node beside the loop keeps its open ticks instead.
         every: only stamps at multiples of this are ticks (ns), for a trigger that comes more often.
@@ -169,4 +180,7 @@ class TickGate:
         return released
 
     def _complete(self, stamp: int) -> bool:
-        return not self._lockstep or all(self._has(i, stamp) for i in self._inputs.values())
+        inputs = self._inputs.values()
+        if self._lockstep:
+            return all(self._has(item, stamp) for item in inputs)
+        return all(item.known(stamp) for item in inputs)

@@ -22,8 +22,6 @@ class ControllerNode(UvmsNode):
         self.connect(inputs, topics.ODOMETRY, self._step)
 
     def _step(self, tick: Tick) -> None:
-        if tick[topics.REFERENCE.name] is None or tick[topics.JOINT_STATES.name] is None:
-            return  # in real time: nothing to follow yet, and the plant keeps to its safe command
         wrench, joints = self._controller.step(
             tick[topics.ODOMETRY.name],
             tick[topics.JOINT_STATES.name],

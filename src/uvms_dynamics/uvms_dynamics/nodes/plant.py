@@ -28,10 +28,10 @@ class PaceConfig(Config):
         1.0, gt=0.0, le=1000.0, description="simulated seconds a wall second, at pace realtime"
     )
     timeout_s: float = Field(
-        5.0, gt=0.0, description="wall time that lockstep waits for a command, s"
+        20.0, gt=0.0, description="wall time that lockstep waits for a command, s"
     )
     first_timeout_s: float = Field(
-        60.0, gt=0.0, description="the same at the first tick, when nodes may still compile, s"
+        180.0, gt=0.0, description="the same at the first tick, when nodes may still compile, s"
     )
     stale_s: float = Field(
         0.5, gt=0.0, description="age at which realtime takes a command for missing, s"
@@ -81,6 +81,7 @@ class PlantNode(UvmsNode):
     def _start(self) -> None:
         self._running = True
         self._publish_tick()
+        self._deadline = time.monotonic()
         self._deadline = self._next_deadline(self._pace.first_timeout_s)
 
     def _take(self, name: str, command: ThrusterCommand | JointCommand) -> None:
@@ -187,9 +188,11 @@ class PlantNode(UvmsNode):
     def _resume(self) -> None:
         if not self._running:
             return
-        self._deadline = time.monotonic() + self._pace.first_timeout_s
+        self._deadline = time.monotonic()
         if not self.lockstep or self._complete():
             self._advance()
+        else:
+            self._deadline += self._pace.first_timeout_s
 
 
 def main(args=None) -> int:

@@ -3,7 +3,7 @@
 import numpy as np
 
 from uvms_dynamics import Vehicle, build_model, coupling_wrench, restoring_wrench
-from uvms_dynamics.errors import SignalError
+from uvms_dynamics.freshness import check_age
 from uvms_dynamics.signals import (
     Array,
     DisturbanceBudget,
@@ -58,12 +58,12 @@ class DisturbanceObserver:
 
         Args:
             odometry: estimate at this stamp.
-            joints: encoders at the same stamp.
+            joints: encoders at the same stamp, or shortly before.
             achieved: wrench of the thrusts commanded at the stamp before; None if not known, which
                 leaves the external wrench as it was.
 
         Raises:
-            SignalError: stamps differ or do not increase, a value is not finite or has a wrong
+            SignalError: stamps do not increase or are too far apart, a value is not finite or has a wrong
                 shape. The observer is as it was before.
         """
         self._check(odometry, joints, achieved)
@@ -99,10 +99,7 @@ class DisturbanceObserver:
     def _check(self, odometry: Odometry, joints: JointStates, achieved: Wrench | None) -> None:
         if self._stamp is not None:
             checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
-        if joints.stamp != odometry.stamp:
-            raise SignalError(
-                f"joints.stamp is {joints.stamp} ns; it must be the odometry's, {odometry.stamp} ns"
-            )
+        check_age("joint_states", joints.stamp, odometry.stamp)
         checks.quaternion("odometry.quaternion", odometry.quaternion)
         checks.array("odometry.nu", odometry.nu, (6,))
         checks.array("odometry.twist_covariance", odometry.twist_covariance, (6, 6))
