@@ -28,6 +28,34 @@ Goal = PathGoal | JointGoal | None
 Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
 
 
+class Stopwatch:
+    """Wall time of a run's two parts: until time goes, and from then on."""
+
+    def __init__(self) -> None:
+        self._made = time.perf_counter()
+        self._went: float | None = None
+        self._stopped = self._made
+
+    def go(self) -> None:
+        """Time goes from the first call on."""
+        if self._went is None:
+            self._went = time.perf_counter()
+
+    def stop(self) -> None:
+        """The run is over."""
+        self._stopped = time.perf_counter()
+
+    @property
+    def start_up_s(self) -> float:
+        """Set-up of the nodes, and compilation where kernels are not compiled yet."""
+        return (self._stopped if self._went is None else self._went) - self._made
+
+    @property
+    def run_s(self) -> float:
+        """From the first moment that time goes to the end."""
+        return 0.0 if self._went is None else self._stopped - self._went
+
+
 @dataclass(frozen=True)
 class Session:
     """A run that is about to begin."""
@@ -65,16 +93,21 @@ class Session:
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
         line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
-        began = time.perf_counter()
+        clock = Stopwatch()
+
+        def progress(stamp: int, note: str) -> None:
+            clock.go()
+            line.show(stamp, note)
+
         completed = False
         with LogWriter(self.folder / "run.mcap") as log:
             self._describe(log, config)
             try:
-                completed = run(log, line.show)
+                completed = run(log, progress)
             finally:
                 line.end()
-        wall = time.perf_counter() - began
-        return self._summarise(completed, wall)
+        clock.stop()
+        return self._summarise(completed, clock)
 
     def _describe(self, log: LogWriter, config: str) -> None:
         log.attach("config.yaml", config, "application/yaml")
@@ -93,8 +126,10 @@ class Session:
             },
         )
 
-    def _summarise(self, completed: bool, wall: float) -> dict[str, Any]:
-        summary = summarise(self.folder / "run.mcap", completed=completed, wall_s=wall)
+    def _summarise(self, completed: bool, clock: Stopwatch) -> dict[str, Any]:
+        log = self.folder / "run.mcap"
+        summary = summarise(log, completed=completed, wall_s=clock.run_s)
+        summary["start_up_s"] = clock.start_up_s
         text = json.dumps(summary, indent=2)
         (self.folder / "summary.json").write_text(text + "\n", encoding="utf-8")
         return summary

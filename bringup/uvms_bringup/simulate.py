@@ -6,6 +6,7 @@ from uvms_bringup.log.encode import SignalWriter
 from uvms_bringup.loop import Loop, LoopTick
 from uvms_bringup.scenario import Scenario
 from uvms_dynamics import Vehicle, diagnostics, topics
+from uvms_dynamics.description import StateFrames, description_message, static_message
 from uvms_dynamics.diagnostics import Status
 from uvms_dynamics.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
 
@@ -33,12 +34,15 @@ def simulate(
         PlantDiverged: the state is not finite any more.
     """
     loop = Loop(scenario, vehicle)
+    frames = StateFrames(vehicle)
     end = to_nanoseconds(scenario.duration_s)
+    if log is not None:
+        write_description(log, vehicle)
     succeeded = True
     while True:
         tick = loop.tick()
         if log is not None:
-            write_tick(log, tick)
+            write_tick(log, tick, frames)
         observe(tick)
         progress(tick.stamp, "")
         if tick.plan is not None and tick.plan.finished is not None:
@@ -50,7 +54,13 @@ def simulate(
         loop.advance(tick)
 
 
-def write_tick(log: SignalWriter, tick: LoopTick) -> None:
+def write_description(log: SignalWriter, vehicle: Vehicle) -> None:
+    """What the graph publishes once, before the first tick."""
+    log.write_plain(topics.ROBOT_DESCRIPTION, description_message(vehicle), 0)
+    log.write_plain(topics.TF_STATIC, static_message(vehicle), 0)
+
+
+def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
     """Every message that the graph publishes in this tick."""
     sensors, truth = tick.sensors, tick.truth
     log.write(topics.CLOCK, tick.stamp)
@@ -67,6 +77,7 @@ def write_tick(log: SignalWriter, tick: LoopTick) -> None:
         for sample in samples:
             log.write(topic, sample)
     log.write(topics.ODOMETRY, tick.odometry)
+    log.write_plain(topics.TF, frames.message(tick.odometry, sensors.joints), tick.stamp)
     log.write(topics.DISTURBANCE, tick.disturbance)
     log.write(topics.DISTURBANCE_BUDGET, tick.budget)
     log.write(topics.WRENCH_COMMAND, tick.wrench)

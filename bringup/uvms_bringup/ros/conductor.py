@@ -10,12 +10,14 @@ from std_srvs.srv import SetBool, Trigger
 
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.recorder import Recorder, Write
+from uvms_bringup.ros.state_publisher import StateBroadcaster
 from uvms_dynamics import diagnostics, topics
 from uvms_dynamics.messages import from_message, to_message
 from uvms_dynamics.ros.convert import action_class, message_class, to_ros
 from uvms_dynamics.ros.node import qos_profile
 from uvms_dynamics.ros.spin import Spinner
 from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
+from uvms_dynamics.vehicle import Vehicle
 
 START_PATIENCE_S = 180.0
 """Wall time for all nodes to come up and find each other; the first start compiles kernels."""
@@ -36,6 +38,7 @@ class Conductor(Node):
         super().__init__("conductor", **options)
         self._recorder = Recorder(self, write)
         self._watch = watch
+        self._end = LOOP_END
         self._faults: dict[str, str] = {}
         self.feedback: Any = None
         self.result: Any = None
@@ -50,6 +53,12 @@ class Conductor(Node):
         self._ready = {node: self.create_client(Trigger, f"{node}/ready") for node in topics.NODES}
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
+
+    def broadcast(self, vehicle: Vehicle, lockstep: bool) -> None:
+        """From now on publish what viewers want, from the messages that are recorded anyway."""
+        states = StateBroadcaster(self, vehicle, lockstep)
+        self._recorder.receivers.update(states.receivers)
+        self._end = (*LOOP_END, topics.TF)
 
     @property
     def stamp(self) -> int:
@@ -78,7 +87,7 @@ class Conductor(Node):
             self._arrival = None
             return False
         self._arrival = self._arrival or time.monotonic()
-        answered = all(newest.get(topic.name, -1) >= end for topic in LOOP_END)
+        answered = all(newest.get(topic.name, -1) >= end for topic in self._end)
         return answered or time.monotonic() - self._arrival > END_PATIENCE_S
 
     _arrival: float | None = None

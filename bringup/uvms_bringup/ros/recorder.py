@@ -14,7 +14,9 @@ from uvms_dynamics.topics import Topic
 
 Write = Callable[[str, str, str, int, bytes], None]
 
-UNSTAMPED = {topics.TF.name, topics.TF_STATIC.name, topics.ROBOT_DESCRIPTION.name}
+UNSTAMPED = {topics.TF_STATIC.name, topics.ROBOT_DESCRIPTION.name}
+COUNT_SIZE = 4
+"""A message that is a sequence alone, as /tf, begins with its length."""
 
 
 class Recorder:
@@ -34,28 +36,31 @@ class Recorder:
         self.stamp = 0
         self.on_clock: Callable[[], None] = lambda: None
         self.newest: dict[str, int] = {}
+        self.receivers: dict[str, Callable[[bytes], None]] = {}  # others who want a topic's bytes
         for topic in topics.ALL:
             self._subscribe(node, topic)
 
     def _subscribe(self, node: Node, topic: Topic) -> None:
         name = topic.resolve(node.get_namespace())
         qos = qos_yaml(topic.qos)
-        stamped = topic.name not in UNSTAMPED
+        stamped, offset = topic.name not in UNSTAMPED, COUNT_SIZE * (topic is topics.TF)
 
         def receive(data: bytes) -> None:
-            stamp = stamp_of(data) if stamped else self.stamp
+            stamp = stamp_of(data, offset) if stamped else self.stamp
             if topic is topics.CLOCK:
                 self.stamp = stamp
                 self.on_clock()
             self.newest[topic.name] = stamp
             self._write(name, topic.type, qos, stamp, data)
+            if topic.name in self.receivers:
+                self.receivers[topic.name](data)
 
         node.create_subscription(
             message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
         )
 
 
-def stamp_of(data: bytes) -> int:
-    """Stamp in ns of a message that begins with a header or a time, from its CDR bytes."""
-    seconds, nanoseconds = unpack_from("<iI" if data[1] & 1 else ">iI", data, 4)
+def stamp_of(data: bytes, offset: int = 0) -> int:
+    """Stamp in ns of a message that has a header or a time at `offset`, from its CDR bytes."""
+    seconds, nanoseconds = unpack_from("<iI" if data[1] & 1 else ">iI", data, 4 + offset)
     return seconds * NANOSECONDS + nanoseconds

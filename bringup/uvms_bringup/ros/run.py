@@ -50,6 +50,7 @@ def run_graph(
     nodes = _composed if composed else _separate
     with nodes(parameters, folder, values) as (inside, watch):
         conductor = Conductor(write, watch)
+        conductor.broadcast(scenario.load_vehicle(), pace.name == "lockstep")
         spinner = Spinner([conductor, *inside])
         try:
             conductor.lead(spinner, goal)
