@@ -101,6 +101,9 @@ class GeneticConfig(Config):
     crossover_rate: float = Field(0.8, ge=0, le=1, description="share of pairs that cross over")
     mutation_rate: float = Field(0.02, ge=0, le=1, description="probability that a bit flips")
     elite: int = Field(2, ge=1, le=8, description="best individuals that live on unchanged")
+    seed_refinements: int = Field(
+        1, ge=0, le=50, description="Gauss-Newton steps that improve each seed at the beginning"
+    )
     refinements: int = Field(
         3, ge=0, le=50, description="Gauss-Newton steps that polish the best individual"
     )

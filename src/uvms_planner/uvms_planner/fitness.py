@@ -46,9 +46,11 @@ def self_disturbance(model, problem, increment, lookahead):
     q_dot = increment[VEHICLE:] / h
     q_ddot = (increment[VEHICLE:] - problem.previous[VEHICLE:]) / h**2
     level = yaw_quaternion(problem.configuration[3] + increment[3])
+    restoring = restoring_wrench(model, level, q + lookahead * q_dot)
+    coupling = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
     wrenches = np.zeros(12)
-    wrenches[:6] = restoring_wrench(model, level, q + lookahead * q_dot)
-    wrenches[6:] = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
+    for i in range(6):
+        wrenches[i], wrenches[6 + i] = restoring[i], coupling[i]
     return wrenches
 
 

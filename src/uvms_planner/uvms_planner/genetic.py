@@ -13,9 +13,8 @@ from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge
 from uvms_planner.genome import decode, encode
+from uvms_planner.linear import copy_into
 from uvms_planner.refine import refine
-
-SEED_REFINEMENTS = 1
 
 
 class GeneticSettings(NamedTuple):
@@ -27,6 +26,7 @@ class GeneticSettings(NamedTuple):
     crossover_rate: float
     mutation_rate: float
     elite: int
+    seed_refinements: int
     refinements: int
 
 
@@ -104,7 +104,7 @@ def breed(chromosomes, fitness, settings, rng, children, start):
     """Fill `children` (p, bits) from row `start` on: selection, crossover, mutation."""
     bits = chromosomes.shape[1]
     for i in range(start, children.shape[0]):
-        children[i] = chromosomes[roulette(fitness, rng.random())]
+        copy_into(children[i], chromosomes[roulette(fitness, rng.random())])
     for i in range(start, children.shape[0] - 1, 2):
         if rng.random() < settings.crossover_rate:
             cross_over(children[i], children[i + 1], 1 + int(rng.random() * (bits - 1)))
@@ -128,20 +128,13 @@ def evolve(model, problem, settings, seeds, rng):
     elite = np.full(settings.elite, -1)
     kept, discarded, feasible, evaluations = 0, 0, 0, 0
 
-    for i in range(count):
-        if i < seeds.shape[0]:
-            increments[i] = seeds[i]
-        else:
-            for k in range(chromosomes.shape[1]):
-                chromosomes[i, k] = rng.random() < 0.5
-            decode(chromosomes[i], problem.lower, problem.upper, settings.bits, increments[i])
-
+    _first_generation(problem, settings, seeds, rng, chromosomes, increments)
     for generation in range(settings.generations):
         for i in range(kept, count):
             valid[i], violation[i], cost[i] = judge(model, problem, increments[i])
             if generation == 0 and i < seeds.shape[0] and valid[i]:
                 violation[i], cost[i], judged = refine(
-                    model, problem, increments[i], violation[i], cost[i], SEED_REFINEMENTS
+                    model, problem, increments[i], violation[i], cost[i], settings.seed_refinements
                 )
                 evaluations += judged
             evaluations += 1
@@ -172,12 +165,24 @@ def evolve(model, problem, settings, seeds, rng):
 
 
 @inner
+def _first_generation(problem, settings, seeds, rng, chromosomes, increments):
+    """Fill `increments` (p, m) with the seeds and then with what random bits mean."""
+    for i in range(increments.shape[0]):
+        if i < seeds.shape[0]:
+            copy_into(increments[i], seeds[i])
+            continue
+        for k in range(chromosomes.shape[1]):
+            chromosomes[i, k] = rng.random() < 0.5
+        decode(chromosomes[i], problem.lower, problem.upper, settings.bits, increments[i])
+
+
+@inner
 def _keep_elite(elite, chromosomes, increments, children, children_increments):
     kept = 0
     for place in range(elite.shape[0]):
         if elite[place] >= 0:
-            children[kept] = chromosomes[elite[place]]
-            children_increments[kept] = increments[elite[place]]
+            copy_into(children[kept], chromosomes[elite[place]])
+            copy_into(children_increments[kept], increments[elite[place]])
             kept += 1
     return kept
 

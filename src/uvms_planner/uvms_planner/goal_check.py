@@ -8,6 +8,7 @@ from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array, PathGoal
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
+from uvms_planner.linear import copy_into
 from uvms_planner.path import EndEffectorPath, JoinedPath, PathSample
 from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project, within_tolerance
@@ -132,13 +133,14 @@ def go_along(model, problem, positions, rotations, lower, upper, frozen):
             problem.upper[i] = 0.0 if frozen[i] else min(problem.reach[i], room_up)
             problem.lower[i] = 0.0 if frozen[i] else -min(problem.reach[i], room_down)
             increment[i] = 0.0
-        problem.position[:] = positions[index]
+        copy_into(problem.position, positions[index])
         if problem.oriented:
-            problem.rotation[:] = rotations[index]
+            for row in range(3):
+                copy_into(problem.rotation[row], rotations[index, row])
         distance, angle = project(model, problem, increment)
         if not within_tolerance(problem, distance, angle):
             return index, distance, angle
-        problem.configuration[:] += increment
+        copy_into(problem.configuration, problem.configuration + increment)
     return -1, 0.0, 0.0
 
 

@@ -1,6 +1,9 @@
-"""Small dense solver for kernels, without temporaries."""
+"""Small dense algebra for kernels, without temporaries.
 
-from uvms_dynamics.kernels.jit import kernel
+Copies are written as loops: the errors that a slice assignment may raise cost seconds to compile.
+"""
+
+from uvms_dynamics.kernels.jit import inner, kernel
 
 
 @kernel
@@ -33,3 +36,10 @@ def solve_in_place(a, b, size):
             total -= a[k, j] * b[j]
         b[k] = total / a[k, k]
     return True
+
+
+@inner
+def copy_into(out, values):
+    """out[:] = values, both (k,)."""
+    for i in range(out.shape[0]):
+        out[i] = values[i]

@@ -66,7 +66,9 @@ def tool_error(model, problem, increment, error):
     distance = np.sqrt(error[0] ** 2 + error[1] ** 2 + error[2] ** 2)
     if not problem.oriented:
         return distance, 0.0
-    error[3:] = rotation_error(problem.rotation, rotation)
+    turn = rotation_error(problem.rotation, rotation)
+    for i in range(3):
+        error[3 + i] = turn[i]
     return distance, np.sqrt(error[3] ** 2 + error[4] ** 2 + error[5] ** 2)
 
 
@@ -91,7 +93,8 @@ def weighted_step(jacobian, error, readiness, free, damping, equations, step):
         trace += gram[a, a]
     for a in range(equations):
         gram[a, a] += damping**2 * trace + 1e-30
-    step[:] = 0.0
+    for i in range(readiness.shape[0]):
+        step[i] = 0.0
     if not solve_in_place(gram, force, equations):
         return
     for i in range(readiness.shape[0]):

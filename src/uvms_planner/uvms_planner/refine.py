@@ -8,7 +8,7 @@ import numpy as np
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge, judged_disturbance
-from uvms_planner.linear import solve_in_place
+from uvms_planner.linear import copy_into, solve_in_place
 from uvms_planner.projection import configuration_jacobian, tool_error
 
 DIFFERENCE = 1e-4  # of a variable's reach
@@ -61,8 +61,8 @@ def constrained_step(problem, increment, hessian, gradient, jacobian, error, ste
     size = increment.shape[0]
     equations = 6 if problem.oriented else 3
     held = np.zeros(size, dtype=np.bool_)
-    step[:] = 0.0
     for i in range(size):
+        step[i] = 0.0
         held[i] = problem.upper[i] <= problem.lower[i]
     for _ in range(size):
         matrix = np.zeros((size + equations, size + equations))
@@ -118,7 +118,7 @@ def refine(model, problem, increment, violation, cost, rounds):
             valid, trial_violation, trial_cost = judge(model, problem, trial)
             judged += 1
             if valid and better(trial_violation, trial_cost, violation, cost):
-                increment[:] = trial
+                copy_into(increment, trial)
                 violation, cost = trial_violation, trial_cost
                 improved = True
                 break

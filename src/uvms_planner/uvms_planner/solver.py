@@ -155,6 +155,7 @@ def _settings(config: PlannerConfig) -> GeneticSettings:
         crossover_rate=genetic.crossover_rate,
         mutation_rate=genetic.mutation_rate,
         elite=genetic.elite,
+        seed_refinements=genetic.seed_refinements,
         refinements=genetic.refinements,
     )
 
