@@ -1,0 +1,32 @@
+"""Thrusts for a wrench, within the thrusters' limits, and what happens beyond them.
+
+Uses uvms_control: bounded weighted least squares. When not all of a wrench can be had, the weights
+say which axes give way; `preserve_direction` scales the whole wrench instead.
+Run it: python examples/control_allocation.py
+"""
+
+import numpy as np
+
+from uvms_control import AllocatorConfig, ThrustAllocator
+from uvms_dynamics import load_vehicle
+from uvms_dynamics.signals import Wrench
+
+WRENCHES = {
+    "a little of everything": [10.0, 5.0, -8.0, 1.0, -3.0, 2.0],
+    "all the main thruster has": [98.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "more surge than there is": [150.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "too much heave and roll at once": [0.0, 0.0, 190.0, 8.0, 0.0, 0.0],
+}
+vehicle = load_vehicle()
+np.set_printoptions(precision=1, suppress=True, floatmode="fixed", linewidth=110)
+print("thrusters:", ", ".join(f"{t.name} {t.limit_n:g} N" for t in vehicle.thrusters))
+
+for preserve in (False, True):
+    allocator = ThrustAllocator(vehicle, AllocatorConfig(preserve_direction=preserve))
+    print(f"\npreserve_direction = {preserve}")
+    for tick, (text, wrench) in enumerate(WRENCHES.items()):
+        # A second between commands, so that no slew limit matters.
+        _, found = allocator.step(Wrench((tick + 1) * 1_000_000_000, np.array(wrench)))
+        print(f"  {text}: {np.array(wrench)}")
+        print(f"    thrust   {found.thrust}  at a limit: {int(found.saturated.sum())}")
+        print(f"    achieved {found.achieved}  short by {found.residual}")

@@ -1,0 +1,39 @@
+"""The arm swings to starboard below a vehicle that nobody controls: it rolls, and finds rest again.
+
+Uses uvms_dynamics alone: the plant, its truth, and the mass matrix for the kinetic energy
+1/2 zeta^T M(q) zeta with zeta = (nu, q_dot). Run it: python examples/dynamics_free_roll.py
+"""
+
+import numpy as np
+
+from uvms_dynamics import Plant, PlantConfig, build_model, load_vehicle, mass_matrix, quat_to_rpy
+from uvms_dynamics.signals import JointCommand, ThrusterCommand
+
+STRETCHED, SWUNG = np.radians([0.0, 0.0, 0.0, 0.0]), np.radians([60.0, 0.0, 0.0, 0.0])
+SWING_FROM, SWING_TO = 2.0, 10.0  # s
+BANDWIDTH = 3.0  # rad/s
+
+vehicle = load_vehicle()
+model = build_model(vehicle)
+plant = Plant(vehicle, PlantConfig(initial_joints_deg=(0.0, 0.0, 0.0, 0.0)), seed=1)
+idle = np.zeros(vehicle.n_thrusters)
+
+print("  time   swing    roll   pitch  kinetic energy  moment of weight and buoyancy")
+print("     s     deg     deg     deg              mJ                            N m")
+while plant.stamp <= 40_000_000_000:
+    t, truth = 1e-9 * plant.stamp, plant.truth()
+    q, q_dot = truth.joints.position, truth.joints.velocity
+    if plant.stamp % 2_000_000_000 == 0:
+        roll, pitch, _ = np.degrees(quat_to_rpy(truth.odometry.quaternion))
+        zeta = np.concatenate([truth.odometry.nu, q_dot])
+        energy = 0.5e3 * zeta @ mass_matrix(model, q) @ zeta
+        moment = truth.disturbance.restoring[3]
+        print(f"{t:6.1f}{np.degrees(q[0]):8.2f}{roll:8.2f}{pitch:8.2f}{energy:16.2f}{moment:31.3f}")
+    # A drive that follows the swing: what a joint lacks in angle and rate becomes acceleration.
+    u = np.clip((t - SWING_FROM) / (SWING_TO - SWING_FROM), 0.0, 1.0)
+    wanted = STRETCHED + u**2 * (3 - 2 * u) * (SWUNG - STRETCHED)
+    acceleration = BANDWIDTH**2 * (wanted - q) - 2.0 * BANDWIDTH * q_dot
+    effort = mass_matrix(model, q)[6:, 6:] @ acceleration
+    plant.step(ThrusterCommand(plant.stamp, idle), JointCommand(plant.stamp, effort))
+
+print("\nThe vehicle comes to rest heeled over: there, weight and buoyancy give no more moment.")

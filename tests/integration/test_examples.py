@@ -1,0 +1,75 @@
+"""Every example runs as a user would run it, and says what it promises."""
+
+import re
+import subprocess
+import sys
+from functools import cache
+from pathlib import Path
+
+import pytest
+
+FOLDER = Path(__file__).resolve().parents[2] / "examples"
+SCRIPTS = sorted(FOLDER.glob("*.py"))
+
+
+@pytest.fixture(scope="module")
+def said(tmp_path_factory):
+    """What an example prints; each runs once, in an empty folder that it must leave empty."""
+
+    @cache
+    def run(script):
+        folder = tmp_path_factory.mktemp(script.stem)
+        done = subprocess.run(
+            [sys.executable, str(script)],
+            cwd=folder,
+            capture_output=True,
+            text=True,
+            timeout=300,
+            check=False,
+        )
+        assert done.returncode == 0, done.stderr
+        assert list(folder.iterdir()) == []
+        return done.stdout.splitlines()
+
+    return run
+
+
+def numbers(line):
+    return [float(text) for text in re.findall(r"-?\d+\.\d+", line)]
+
+
+def test_there_is_one_for_each_package():
+    packages = {"dynamics", "planner", "control", "observer", "bringup"}
+    assert packages <= {script.stem.split("_")[0] for script in SCRIPTS}
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=lambda path: path.stem)
+def test_example_runs_without_ros(script, said):
+    text = script.read_text(encoding="utf-8")
+    assert f"python examples/{script.name}" in text.split('"""')[1]
+    assert not re.search(r"^(import|from) (rclpy|\w+_msgs)", text, re.MULTILINE)
+    assert len(said(script)) >= 2
+
+
+def test_free_vehicle_heels_over_and_comes_to_rest(said):
+    rows = [numbers(line) for line in said(FOLDER / "dynamics_free_roll.py")[2:-2]]
+    _, swing, roll, _, energy, moment = rows[-1]
+    assert 58.0 < swing < 64.0
+    assert 10.0 < roll < 30.0
+    assert energy < 0.1 * max(row[4] for row in rows)
+    assert abs(moment) < 0.02
+
+
+def test_genetic_plan_disturbs_less_than_the_arm_alone(said):
+    ends = [
+        numbers(line)[-1]
+        for line in said(FOLDER / "planner_path.py")
+        if "end of the goal is reached" in line
+    ]
+    arm_only, genetic = ends
+    assert genetic < 0.5 * arm_only
+
+
+def test_own_controller_takes_the_place_of_ours(said):
+    ours, own = map(numbers, said(FOLDER / "own_controller.py"))
+    assert ours[0] < 5.0 < own[0] < 25.0
