@@ -19,6 +19,8 @@ from uvms_dynamics.signals import (
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
 """How often an idle plant looks whether all its peers are there, s of wall time."""
+SETTLE = 1.0
+"""Time for the nodes to find each other once all are there, s of wall time."""
 
 
 class PaceConfig(Config):
@@ -58,6 +60,7 @@ class PlantNode(UvmsNode):
         self._wanted = self._pace.auto_start
         self._deadline = time.monotonic() + POLL
         self._timeouts = 0
+        self._complete_since: float | None = None
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
             self.listen(topic, lambda command, name=topic.name: self._take(name, command))
         self.create_service(Trigger, "start", self._answer_start)
@@ -71,12 +74,23 @@ class PlantNode(UvmsNode):
         """The deadline passed: look for peers, or go on without the missing commands."""
         if not self._running:
             self._deadline = time.monotonic() + POLL
-            if self._wanted and not self.missing_peers():
-                self._start()
+            if self._wanted:
+                self._start_when_settled()
         elif self.lockstep:
             self._time_out()
         else:
             self._advance()
+
+    def _start_when_settled(self) -> None:
+        # That all endpoints of the loop are in the graph does not say that each has found the
+        # other yet; a message sent before is lost, and the first tick with it.
+        if self.missing_peers() or self.missing_in_graph():
+            self._complete_since = None
+        elif self._complete_since is None:
+            self._complete_since = time.monotonic()
+        elif time.monotonic() - self._complete_since > SETTLE:
+            self.get_logger().info("all nodes are there: starting")
+            self._start()
 
     def _start(self) -> None:
         self._running = True

@@ -165,6 +165,13 @@ class UvmsNode(Node):
             if topic in NEEDED and self._outputs[topic].get_subscription_count() == 0
         ]
 
+    def missing_in_graph(self) -> list[str]:
+        """Topics of the loop that nobody in the whole graph publishes or reads, in words."""
+        names = sorted(topic.name for topic in NEEDED)
+        return [f"nobody publishes {n!r}" for n in names if not self.count_publishers(n)] + [
+            f"nobody subscribes to {n!r}" for n in names if not self.count_subscribers(n)
+        ]
+
     def _admit(self, topic: Topic, signal: Any) -> None:
         for tick in self._gate.push(topic.name, signal.stamp, signal):
             self._status = Status(tick.stamp, self.get_name())
