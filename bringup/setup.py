@@ -37,6 +37,7 @@ setup(
     entry_points={
         "console_scripts": [
             "uvms = uvms_bringup.cli:main",
+            "state_publisher = uvms_bringup.ros.state_publisher:main",
         ]
     },
 )

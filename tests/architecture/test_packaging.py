@@ -12,7 +12,7 @@ EXECUTABLES = {
     "uvms_observer": {"navigation", "disturbance_observer"},
     "uvms_planner": {"motion_planner"},
     "uvms_control": {"controller", "thrust_allocator"},
-    "uvms_bringup": {"uvms"},
+    "uvms_bringup": {"uvms", "state_publisher"},
 }
 
 

@@ -17,6 +17,7 @@ from uvms_dynamics.ros.convert import action_class, message_class, to_ros
 from uvms_dynamics.ros.node import qos_profile
 from uvms_dynamics.ros.spin import Spinner
 from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
+from uvms_dynamics.topics import Topic
 from uvms_dynamics.vehicle import Vehicle
 
 START_PATIENCE_S = 180.0
@@ -38,7 +39,7 @@ class Conductor(Node):
         super().__init__("conductor", **options)
         self._recorder = Recorder(self, write)
         self._watch = watch
-        self._end = LOOP_END
+        self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}
         self.feedback: Any = None
         self.result: Any = None
