@@ -9,6 +9,7 @@ from uvms_dynamics import Vehicle, diagnostics, topics
 from uvms_dynamics.description import StateFrames, description_message, static_message
 from uvms_dynamics.diagnostics import Status
 from uvms_dynamics.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
+from uvms_planner import PlannerStep
 
 Progress = Callable[[int, str], None]
 
@@ -86,17 +87,11 @@ def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
     log.write(topics.WRENCH_ACHIEVED, Wrench(tick.stamp, tick.allocation.achieved))
     log.write(topics.ALLOCATION, tick.allocation)
     if tick.plan is not None:
-        _write_plan(log, tick)
+        _write_plan(log, tick.stamp, tick.plan, tick.plan_ms)
 
 
-def _write_plan(log: SignalWriter, tick: LoopTick) -> None:
-    for reference in tick.plan.references:
-        log.write(topics.REFERENCE, reference, tick.stamp)
-    status = Status(
-        tick.stamp,
-        "motion_planner",
-        diagnostics.OK,
-        "ok",
-        {"step_ms": tick.plan_ms} | tick.plan.diagnostics(),
-    )
-    log.write(topics.DIAGNOSTICS, status)
+def _write_plan(log: SignalWriter, stamp: int, plan: PlannerStep, step_ms: float) -> None:
+    for reference in plan.references:
+        log.write(topics.REFERENCE, reference)
+    values = {"step_ms": step_ms} | plan.diagnostics()
+    log.write(topics.DIAGNOSTICS, Status(stamp, "motion_planner", diagnostics.OK, "ok", values))

@@ -50,6 +50,7 @@ class Same(Input):
     """Comes once a tick, with the tick's own stamp."""
 
     def complete(self, stamp: int) -> bool:
+        """Whether the value of this very stamp has come."""
         return any(when == stamp for when, _ in self._items)
 
 
@@ -61,17 +62,20 @@ class Previous(Input):
         self._period = period
 
     def complete(self, stamp: int) -> bool:
+        """Whether the value of the tick before has come."""
         return any(when == stamp - self._period for when, _ in self._items)
 
     def known(self, stamp: int) -> bool:
-        return True  # at the first tick there is none
+        """Always: at the first tick there is none."""
+        return True
 
     def take(self, stamp: int) -> Any:
+        """The newest value before the tick, None at the first."""
         return super().take(stamp - 1)
 
 
 class Periodic(Input):
-    """A sensor at its own rate, due at multiples of `period`: all its samples since the last tick."""
+    """A sensor at its own rate, due at multiples of `period`: all samples since the last tick."""
 
     def __init__(self, period: int) -> None:
         super().__init__()
@@ -79,13 +83,16 @@ class Periodic(Input):
         self._taken = -1
 
     def complete(self, stamp: int) -> bool:
+        """Whether the sample that is due at or before the stamp has come."""
         due = stamp - stamp % self._period
         return due <= self._taken or (bool(self._items) and self._items[-1][0] >= due)
 
     def known(self, stamp: int) -> bool:
-        return True  # a silent sensor stops nobody
+        """Always: a silent sensor stops nobody."""
+        return True
 
     def take(self, stamp: int) -> tuple[Any, ...]:
+        """All samples since the last tick, in order."""
         samples = []
         while self._items and self._items[0][0] <= stamp:
             self._taken, value = self._items.popleft()
@@ -97,6 +104,7 @@ class Covering(Input):
     """A value that holds for a time (`value.end`): the newest with stamp <= tick < end."""
 
     def complete(self, stamp: int) -> bool:
+        """Whether a value covers the stamp."""
         return any(when <= stamp < value.end for when, value in self._items)
 
 

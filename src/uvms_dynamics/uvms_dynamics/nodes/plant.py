@@ -1,6 +1,8 @@
 """Node `plant`: vehicle, arm, water and sensors; it owns time and publishes /clock."""
 
 import time
+from functools import partial
+from typing import Any
 
 from pydantic import Field
 from std_srvs.srv import SetBool, Trigger
@@ -54,15 +56,15 @@ class PlantNode(UvmsNode):
         self._plant = Plant(self.vehicle, self.config(PlantConfig), self.seed)
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
-        self._commands: dict[str, ThrusterCommand | JointCommand] = {}
+        self._commands: dict[str, Any] = {}
         self._running = False
         self._paused = self._pace.start_paused
         self._wanted = self._pace.auto_start
-        self._deadline = time.monotonic() + POLL
+        self._deadline: float | None = time.monotonic() + POLL
         self._timeouts = 0
         self._complete_since: float | None = None
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
-            self.listen(topic, lambda command, name=topic.name: self._take(name, command))
+            self.listen(topic, partial(self._take, topic.name))
         self.create_service(Trigger, "start", self._answer_start)
         self.create_service(SetBool, "pause", self._answer_pause)
 
@@ -114,7 +116,7 @@ class PlantNode(UvmsNode):
             return
         if not self.lockstep:
             self._warn_of_stale()
-        self.guard(lambda: self._plant.step(self._thrust(), self._effort()))
+        self._plant.step(self._thrust(), self._effort())
         self._publish_tick()
         self._deadline = self._next_deadline(self._pace.timeout_s)
 

@@ -33,6 +33,9 @@ def main_of(
         return 2
     try:
         spinner.spin()
+    except UvmsError as fault:
+        print(f"error: {fault}", file=sys.stderr)
+        return 2
     finally:
         spinner.shutdown()
     return 0

@@ -1,6 +1,7 @@
 """What the six nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any, Literal, TypeVar
 
 from pydantic import Field
@@ -13,7 +14,7 @@ from uvms_dynamics import diagnostics, topics
 from uvms_dynamics.cdr import codec
 from uvms_dynamics.config import Config
 from uvms_dynamics.diagnostics import Status
-from uvms_dynamics.errors import UvmsError
+from uvms_dynamics.errors import PlantDiverged, UvmsError
 from uvms_dynamics.gate import Input, Tick, TickGate
 from uvms_dynamics.messages import from_message, to_message
 from uvms_dynamics.ros.convert import message_class
@@ -99,7 +100,7 @@ class UvmsNode(Node):
         self._gate = TickGate(by_name, trigger.name, self.lockstep, in_loop, every)
         self._on_tick = on_tick
         for topic in inputs:
-            self.listen(topic, lambda signal, topic=topic: self._admit(topic, signal))
+            self.listen(topic, partial(self._admit, topic))
 
     def listen(self, topic: Topic, callback: Callable[[Any], None]) -> None:
         """Subscribe; the callback gets checked signals, and its faults are reported."""
@@ -117,9 +118,15 @@ class UvmsNode(Node):
         self._senders[topic](signal)
 
     def guard(self, action: Callable[[], None]) -> None:
-        """Run a step; an error of ours is reported and the node goes on with what it had."""
+        """Run a step; an error of ours is reported and the node goes on with what it had.
+
+        A plant that diverged has nothing to go on with: that error ends the node.
+        """
         try:
             action()
+        except PlantDiverged as fault:
+            self.report(self._status.stamp, diagnostics.ERROR, str(fault))
+            raise
         except UvmsError as fault:
             self.refuse(self._status.stamp, [fault])
 
@@ -173,7 +180,7 @@ class UvmsNode(Node):
         ]
 
     def _admit(self, topic: Topic, signal: Any) -> None:
-        for tick in self._gate.push(topic.name, signal.stamp, signal):
+        for tick in self._gate.push(topic.name, signal.stamp, signal) if self._gate else ():
             self._status = Status(tick.stamp, self.get_name())
             self._on_tick(tick)
             self.report_each_second(tick.stamp)

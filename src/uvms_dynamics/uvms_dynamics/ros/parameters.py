@@ -95,9 +95,9 @@ def _bounds(field: FieldInfo) -> tuple[float | None, float | None]:
     low = high = None
     for item in field.metadata:
         if isinstance(item, annotated_types.Ge):
-            low = float(item.ge)
+            low = float(str(item.ge))
         if isinstance(item, annotated_types.Le):
-            high = float(item.le)
+            high = float(str(item.le))
     return low, high
 
 

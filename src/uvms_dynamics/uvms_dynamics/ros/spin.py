@@ -9,6 +9,7 @@ import signal
 import threading
 import time
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import rclpy
 from rclpy.experimental import EventsExecutor
@@ -24,7 +25,9 @@ IDLE = 0.2
 def start(args: Sequence[str] | None = None) -> None:
     """Initialise rclpy with SIGINT and SIGTERM blocked, to be taken by `Spinner`."""
     signal.pthread_sigmask(signal.SIG_BLOCK, SIGNALS)
-    rclpy.init(args=args, signal_handler_options=SignalHandlerOptions.NO)
+    rclpy.init(
+        args=None if args is None else list(args), signal_handler_options=SignalHandlerOptions.NO
+    )
 
 
 class Spinner:
@@ -45,7 +48,7 @@ class Spinner:
         self.done: Future = Future()
         self._turn: Future = Future()
         self._turn_ends = 0.0
-        self._wakers = [node for node in nodes if hasattr(node, "on_wake")]
+        self._wakers: list[Any] = [node for node in nodes if hasattr(node, "on_wake")]
         # Threads that were there before `start` (of a BLAS library, say) do not block the signals;
         # one that comes to them runs this handler, between two sleeps of the main thread.
         for number in SIGNALS:

@@ -63,8 +63,8 @@ class DisturbanceObserver:
                 leaves the external wrench as it was.
 
         Raises:
-            SignalError: stamps do not increase or are too far apart, a value is not finite or has a wrong
-                shape. The observer is as it was before.
+            SignalError: stamps do not increase or are too far apart, a value is not finite or has
+                a wrong shape. The observer is as it was before.
         """
         self._check(odometry, joints, achieved)
         now = Moment(odometry.quaternion, odometry.nu, joints.position, joints.velocity)

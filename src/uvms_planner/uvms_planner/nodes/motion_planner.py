@@ -31,7 +31,8 @@ class MotionPlannerNode(UvmsNode):
         config = self.config(PlannerConfig)
         self._planner = MotionPlanner(self.vehicle, config, self.seed)
         self._handle: ServerGoalHandle | None = None
-        self._outcome: Future | None = None
+        self._outcome: Any = None
+        self._type: Any = None
         self._stamp = 0
         self._servers = [self._serve(action) for action in topics.ACTIONS]
         inputs = {topics.ODOMETRY: Same(), topics.JOINT_STATES: Same()}
@@ -79,7 +80,7 @@ class MotionPlannerNode(UvmsNode):
             return GoalResponse.REJECT
         return GoalResponse.ACCEPT
 
-    def _begin(self, cls: type, handle: ServerGoalHandle) -> None:
+    def _begin(self, cls: Any, handle: ServerGoalHandle) -> None:
         self._type, self._handle, self._outcome = cls, handle, Future()
         handle.execute()
 
