@@ -63,5 +63,6 @@ def _run(how: str, seconds: float) -> dict:
             capture_output=True, text=True, env=environment, timeout=PATIENCE_S, check=False,
         )  # fmt: skip
     if done.returncode != 0:
-        raise RuntimeError(f"{how}: code {done.returncode}: {done.stderr[-500:]}")
+        said = [line for line in done.stderr.splitlines() if line.strip()]
+        raise RuntimeError(f"{how} ended with code {done.returncode}: {' | '.join(said[-3:])}")
     return json.loads(done.stdout.splitlines()[-1])
