@@ -141,7 +141,7 @@ class Feeding:
         vehicle.write_text(self.run.text("vehicle.yaml"), encoding="utf-8")
         parameters = node_parameters(self.scenario, vehicle, Pace())[self.node]
         if self.node == "plant":
-            parameters |= {"auto_start": True, "start_paused": False}
+            parameters["start_paused"] = False
         file = write_parameter_file(folder / f"{self.node}.yaml", self.node, parameters)
         return node_command(self.node, file, f"/{self.run.namespace}" if self.run.namespace else "")
 
@@ -160,6 +160,17 @@ class Feeding:
                     f"waited {START_PATIENCE_S:.0f} s in vain: {self.node}: {self._feeder.lack}"
                 )
             self._spinner.spin_for(Future(), 0.02)
+        if self.node == "plant":
+            self._start_plant()
+
+    def _start_plant(self) -> None:
+        client = self._feeder.create_client(Trigger, "start")
+        deadline = time.monotonic() + START_PATIENCE_S
+        while not client.service_is_ready() and time.monotonic() < deadline:
+            self._check()
+            self._spinner.spin_for(Future(), 0.02)
+        if not self._await(client.call_async(Trigger.Request()), START_PATIENCE_S):
+            raise RunError(f"waited {START_PATIENCE_S:.0f} s in vain: the plant did not start")
 
     def all_ticks(self, metronome: Metronome, line: ProgressLine) -> int:
         """Feed tick by tick; returns how many were left unanswered."""
