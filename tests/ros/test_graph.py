@@ -85,5 +85,5 @@ def test_real_time_follows_the_wall_clock(tmp_path):
     outcome = finished(uvms(tmp_path, *arguments))
     stamps = outcome.log.series(topics.CLOCK).time
     assert np.allclose(np.diff(stamps), 0.05)
-    assert outcome.summary["wall_s"] >= 8.0 / 4.0
+    assert outcome.summary["wall_s"] >= 0.95 * 8.0 / 4.0
     assert outcome.summary["end_effector_error_m"]["max"] < 0.1

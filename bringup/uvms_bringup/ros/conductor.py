@@ -15,6 +15,7 @@ from uvms_dynamics import diagnostics, topics
 from uvms_dynamics.messages import from_message, to_message
 from uvms_dynamics.ros.convert import action_class, message_class, to_ros
 from uvms_dynamics.ros.node import qos_profile
+from uvms_dynamics.ros.roll_call import RollCall
 from uvms_dynamics.ros.spin import Spinner
 from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
 from uvms_dynamics.topics import Topic
@@ -51,7 +52,7 @@ class Conductor(Node):
             self._take_status,
             qos_profile(topics.DIAGNOSTICS.qos),
         )
-        self._ready = {node: self.create_client(Trigger, f"{node}/ready") for node in topics.NODES}
+        self._roll_call = RollCall(self, topics.NODES)
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
 
@@ -94,24 +95,11 @@ class Conductor(Node):
     _arrival: float | None = None
 
     def _await_nodes(self, spinner: Spinner) -> None:
-        lacks = dict.fromkeys(self._ready, "has not come up")
-        asked: dict[str, Any] = {}
-
-        def all_ready() -> bool:
-            for node, client in self._ready.items():
-                answer = asked.get(node)
-                if answer is not None and answer.done():
-                    lacks[node] = "" if answer.result().success else answer.result().message
-                    answer = asked.pop(node) and None
-                if answer is None and lacks[node] and client.service_is_ready():
-                    asked[node] = client.call_async(Trigger.Request())
-            return not any(lacks.values())
-
         self._await(
             spinner,
-            all_ready,
+            lambda: not self._roll_call.poll(),
             START_PATIENCE_S,
-            lambda: "; ".join(f"{node}: {lack}" for node, lack in lacks.items() if lack),
+            lambda: "; ".join(f"{node}: {lack}" for node, lack in self._roll_call.poll().items()),
         )
 
     def send_goal(self, spinner: Spinner, goal: PathGoal | JointGoal) -> None:

@@ -11,6 +11,7 @@ from uvms_dynamics import Plant, PlantConfig, diagnostics, topics
 from uvms_dynamics.config import Config
 from uvms_dynamics.ros.main import main_of
 from uvms_dynamics.ros.node import UvmsNode
+from uvms_dynamics.ros.roll_call import NOT_UP, RollCall
 from uvms_dynamics.signals import (
     JointCommand,
     ThrusterCommand,
@@ -22,7 +23,7 @@ COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
 """How often an idle plant looks whether all its peers are there, s of wall time."""
 SETTLE = 1.0
-"""Time for the nodes to find each other once all are there, s of wall time."""
+"""How long all must have been there before the start, s of wall time."""
 
 
 class PaceConfig(Config):
@@ -63,6 +64,7 @@ class PlantNode(UvmsNode):
         self._deadline: float | None = time.monotonic() + POLL
         self._timeouts = 0
         self._complete_since: float | None = None
+        self._roll_call = RollCall(self, (name for name in topics.NODES if name != "plant"))
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
             self.listen(topic, partial(self._take, topic.name))
         self.create_service(Trigger, "start", self._answer_start)
@@ -84,15 +86,19 @@ class PlantNode(UvmsNode):
             self._advance()
 
     def _start_when_settled(self) -> None:
-        # That all endpoints of the loop are in the graph does not say that each has found the
-        # other yet; a message sent before is lost, and the first tick with it.
-        if self.missing_peers() or self.missing_in_graph():
+        if not self._all_there():
             self._complete_since = None
         elif self._complete_since is None:
             self._complete_since = time.monotonic()
         elif time.monotonic() - self._complete_since > SETTLE:
             self.get_logger().info("all nodes are there: starting")
             self._start()
+
+    def _all_there(self) -> bool:
+        if self.missing_peers() or self.missing_in_graph():
+            return False
+        # A node of the user's own may have no such service: then the graph must do.
+        return all(lack == NOT_UP for lack in self._roll_call.poll().values())
 
     def _start(self) -> None:
         self._running = True

@@ -160,17 +160,21 @@ class UvmsNode(Node):
         return self.vehicle.thruster_names if by_thruster else self.vehicle.joint_names
 
     def missing_peers(self) -> list[str]:
-        """What this node still lacks before a run can start, in words."""
-        lacks = [
-            f"nobody publishes {name!r}"
-            for name, subscription in self._receivers.items()
-            if subscription.get_publisher_count() == 0
-        ]
-        return lacks + [
-            f"nobody subscribes to {topic.name!r}"
-            for topic in self._topics.outputs
-            if topic in NEEDED and self._outputs[topic].get_subscription_count() == 0
-        ]
+        """What this node still lacks before a run can start, in words.
+
+        Each of its endpoints must have found all that the graph holds on the other side: what is
+        sent before that is lost.
+        """
+        lacks = []
+        for name, subscription in self._receivers.items():
+            there, found = self.count_publishers(name), subscription.get_publisher_count()
+            if found < max(there, 1):
+                lacks.append(_lack("publishes", name, there, found))
+        for topic, publisher in self._outputs.items():
+            there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()
+            if found < max(there, 1 if topic in NEEDED else 0):
+                lacks.append(_lack("subscribes to", topic.name, there, found))
+        return lacks
 
     def missing_in_graph(self) -> list[str]:
         """Topics of the loop that nobody in the whole graph publishes or reads, in words."""
@@ -195,3 +199,9 @@ class UvmsNode(Node):
         lacks = self.missing_peers()
         response.success, response.message = not lacks, "; ".join(lacks)
         return response
+
+
+def _lack(does: str, topic: str, there: int, found: int) -> str:
+    if not there:
+        return f"nobody {does} {topic!r}"
+    return f"{there - found} of {there} that {does} {topic!r} not found yet"
