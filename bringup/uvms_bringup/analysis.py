@@ -9,6 +9,7 @@ from uvms_bringup.errors import LogError
 from uvms_bringup.log import goal_file
 from uvms_bringup.log.read import RunLog, Series
 from uvms_dynamics import Model, build_model, end_effector, topics
+from uvms_dynamics.errors import VehicleFileError
 from uvms_dynamics.rotations import quat_to_rpy
 from uvms_dynamics.signals import Array, PathGoal, Reference, to_seconds
 from uvms_dynamics.vehicle import Vehicle
@@ -45,8 +46,12 @@ class Analysis:
 
     @cached_property
     def vehicle(self) -> Vehicle:
-        """The vehicle of the run."""
-        return vehicle_from_yaml(self.log.text("vehicle.yaml"), f"{self.log.path}: vehicle.yaml")
+        """The vehicle of the run; LogError where the log's copy is missing or damaged."""
+        text = self.log.text("vehicle.yaml")
+        try:
+            return vehicle_from_yaml(text, f"log {self.log.path}: its attachment 'vehicle.yaml'")
+        except VehicleFileError as fault:
+            raise LogError(str(fault)) from fault
 
     @cached_property
     def _model(self) -> Model:

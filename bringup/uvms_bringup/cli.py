@@ -30,7 +30,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     options.command = "uvms " + shlex.join(arguments)
     try:
         return options.do(options)
-    except UvmsError as fault:
+    except (UvmsError, OSError) as fault:  # OSError: the disk is full, a folder may not be written
         print(f"error: {fault}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
@@ -60,6 +60,7 @@ def parser() -> argparse.ArgumentParser:
 
 def _add_run(commands: Any, name: str, action: Any, text: str) -> None:
     scenarios = ", ".join(known_scenarios())
+    beside = "" if action is run else " (for `uvms run`; has no effect here)"
     command = commands.add_parser(name, help=text, description=text.capitalize() + ".")
     command.set_defaults(do=action)
     add = command.add_argument
@@ -71,9 +72,13 @@ def _add_run(commands: Any, name: str, action: Any, text: str) -> None:
         default="lockstep",
         metavar="PACE",
         help="lockstep: repeatable, as fast as the machine (default); realtime or realtime:FACTOR: "
-        "by the clock on the wall",
+        "by the clock on the wall" + beside,
     )
-    add("--composed", action="store_true", help="all nodes in one process: several times faster")
+    add(
+        "--composed",
+        action="store_true",
+        help="all nodes in one process: several times faster" + beside,
+    )
     add("--vehicle", metavar="FILE", help="vehicle file (default: scenario's)")
     add(
         "--set",
@@ -116,8 +121,7 @@ def _add_report(commands: Any) -> None:
     command.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
 
 
-def _session(options: argparse.Namespace) -> tuple[Session, Pace]:
-    pace = Pace.parse(options.pace)
+def _session(options: argparse.Namespace, pace: Pace) -> Session:
     scenario = load_scenario(
         options.scenario,
         options.set,
@@ -127,18 +131,27 @@ def _session(options: argparse.Namespace) -> tuple[Session, Pace]:
     )
     session = prepare(scenario, options.output, str(pace), options.command)
     print(f"{scenario.scenario}: {scenario.description}\nto {session.folder}", flush=True)
-    return session, pace
+    return session
 
 
 def run(options: argparse.Namespace) -> int:
     """`uvms run`."""
-    session, pace = _session(options)
+    pace = Pace.parse(options.pace)
+    session = _session(options, pace)
     return _tell(session, session.run_graph(pace, options.composed))
 
 
 def simulate(options: argparse.Namespace) -> int:
-    """`uvms simulate`."""
-    session, _ = _session(options)
+    """`uvms simulate`: takes the options of `uvms run`, and says which have no effect."""
+    lockstep, asked = Pace(), Pace.parse(options.pace)
+    given = {f"--pace {asked}": asked != lockstep, "--composed": options.composed}
+    if idle := [name for name, is_given in given.items() if is_given]:
+        print(
+            f"note: {' and '.join(idle)}: no effect on `uvms simulate`, which always runs in one"
+            " process, as fast as the machine; `uvms run` heeds it",
+            file=sys.stderr,
+        )
+    session = _session(options, lockstep)
     return _tell(session, session.run_simulation())
 
 

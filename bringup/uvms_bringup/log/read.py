@@ -6,7 +6,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import yaml
 
 from uvms_bringup.errors import LogError
 from uvms_bringup.log.records import Records, read_records
@@ -17,6 +16,7 @@ from uvms_dynamics.errors import SignalError
 from uvms_dynamics.messages import from_message
 from uvms_dynamics.signals import NANOSECONDS, Array
 from uvms_dynamics.topics import Topic
+from uvms_dynamics.yaml_text import parse_yaml
 
 RUN = "uvms"
 """Name of the metadata record about the run."""
@@ -92,16 +92,29 @@ class RunLog:
         """An attachment as text.
 
         Raises:
-            LogError: the log has none of that name.
+            LogError: the log has none of that name, or it is damaged.
         """
         if name not in self.attachments:
             known = ", ".join(self.attachments) or "none"
             raise LogError(f"log {self.path}: has no attachment {name!r}; it has {known}")
-        return self.attachments[name].decode()
+        try:
+            return self.attachments[name].decode()
+        except UnicodeDecodeError as fault:
+            raise LogError(
+                f"log {self.path}: its attachment {name!r} is damaged: {fault}"
+            ) from fault
 
     def configuration(self) -> dict[str, Any]:
-        """The complete configuration of the run."""
-        return yaml.safe_load(self.text("config.yaml"))
+        """The complete configuration of the run.
+
+        Raises:
+            LogError: the log has none, or it is damaged.
+        """
+        what = f"log {self.path}: its attachment 'config.yaml'"
+        values = parse_yaml(self.text("config.yaml"), what, LogError)
+        if not isinstance(values, dict):
+            raise LogError(f"{what} is not a mapping of names to values")
+        return values
 
     def has(self, topic: Topic) -> bool:
         """Whether there is a channel of the topic."""

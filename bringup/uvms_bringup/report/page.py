@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from uvms_bringup.errors import LogError
 from uvms_bringup.log.read import RunLog
 
 CSS = Path(__file__).with_name("page.css")
@@ -135,5 +136,8 @@ def _table(values: dict[str, Any]) -> str:
 def _details(name: str, log: RunLog) -> str:
     if name not in log.attachments:
         return ""
-    text = html.escape(log.text(name))
+    try:
+        text = html.escape(log.text(name))
+    except LogError as fault:
+        text = html.escape(str(fault))
     return f"<details><summary>{name}</summary><pre>{text}</pre></details>"

@@ -1,5 +1,6 @@
 """`uvms replay`: publishes a log again with /clock, or feeds one node with its recorded inputs."""
 
+import math
 import os
 import time
 from collections.abc import Callable
@@ -41,11 +42,11 @@ def replay(
         output: folder for what the fed node answers; None: beside the log.
 
     Raises:
-        RunError: the rate is negative, or there is no such node, or it does not answer.
+        RunError: the rate is negative or not finite, there is no such node, or it does not answer.
         LogError: the log cannot be read or lacks what is needed.
     """
-    if rate is not None and rate < 0.0:
-        raise RunError(f"--rate {rate:g}: a factor is 0 (as fast as possible) or more")
+    if rate is not None and not 0.0 <= rate < math.inf:  # which nan is not either
+        raise RunError(f"--rate {rate:g}: choose 0 (as fast as possible) or a finite factor above")
     if into is not None and into not in topics.NODES:
         raise RunError(f"--into {into!r}: choose one of {', '.join(topics.NODES)}")
     run = RunLog.open(log)

@@ -14,9 +14,11 @@ _LONGEST_ECHO = 120  # characters of a wrong value that are worth repeating in a
 
 
 class Config(BaseModel):
-    """Base of all configurations: frozen, and unknown names are errors."""
+    """Base of all configurations: frozen, known names only, finite numbers only."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, validate_default=True)
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
+    )
 
 
 def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:

@@ -52,7 +52,7 @@ class BoundedLeastSquares:
             raise AllocationError(
                 f"no thrust found for the wrench {np.array2string(tau, precision=6)}: after "
                 f"{self._max_steps} steps of the active-set method the optimum was not reached; "
-                "raise allocator.regularisation or bring allocator.weights closer together"
+                "raise allocation.regularisation or bring allocation.weights closer together"
             )
         bound_low = -self.limits if lower is None else lower
         bound_high = self.limits if upper is None else upper

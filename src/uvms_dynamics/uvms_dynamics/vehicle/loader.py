@@ -1,6 +1,6 @@
 """Read, override, check, expand and write vehicle files."""
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,21 +12,9 @@ from uvms_dynamics.vehicle.expand import MissingShapeError, expand
 from uvms_dynamics.vehicle.locate import reference_file
 from uvms_dynamics.vehicle.overrides import override
 from uvms_dynamics.vehicle.vehicle import Vehicle
+from uvms_dynamics.yaml_text import parse_yaml, read_yaml
 
-
-class _UniqueKeyLoader(yaml.SafeLoader):
-    """YAML as usual, but a key given twice is an error instead of the last one winning."""
-
-    def construct_mapping(self, node: yaml.MappingNode, deep: bool = False) -> dict[Hashable, Any]:
-        seen = set()
-        for key_node, _ in node.value:
-            key = self.construct_object(key_node, deep=True)
-            if key in seen:
-                raise yaml.constructor.ConstructorError(
-                    None, None, f"the key {key!r} is given twice", key_node.start_mark
-                )
-            seen.add(key)
-        return super().construct_mapping(node, deep)
+_LONGEST_VALUE = 40  # characters of an override that an error repeats
 
 
 def load_vehicle(
@@ -38,7 +26,7 @@ def load_vehicle(
     out, so that derived values follow them. Raises VehicleFileError with one line per fault.
     """
     path = reference_file() if path is None else Path(path)
-    return vehicle_from_data(_read(path), str(path), overrides or {})
+    return vehicle_from_data(read_yaml(path, str(path), VehicleFileError), str(path), overrides)
 
 
 def vehicle_from_data(
@@ -48,6 +36,7 @@ def vehicle_from_data(
     parsed = validated(Vehicle, data, what, VehicleFileError)
     if overrides:
         changed = override(parsed.model_dump(warnings=False), overrides)
+        what = _with(what, overrides)
         parsed = validated(Vehicle, changed, what, VehicleFileError)
     try:
         return validated(Vehicle, expand(parsed), what, VehicleFileError)
@@ -64,19 +53,15 @@ def dump_vehicle(vehicle: Vehicle) -> str:
 
 def vehicle_from_yaml(text: str, what: str = "vehicle") -> Vehicle:
     """Vehicle of a YAML text, such as `dump_vehicle` wrote into a log."""
-    return vehicle_from_data(_parse(text, what), what)
+    return vehicle_from_data(parse_yaml(text, what, VehicleFileError), what)
 
 
-def _read(path: Path) -> Any:
-    try:
-        text = path.read_text(encoding="utf-8")
-    except (OSError, UnicodeDecodeError) as fault:
-        raise VehicleFileError(f"{path}: cannot be read: {fault}") from fault
-    return _parse(text, str(path))
+def _with(what: str, overrides: Mapping[str, Any]) -> str:
+    """The file's name with the overrides, one of which is to blame for what comes after."""
+    told = ", ".join(f"{path}={_short(value)}" for path, value in overrides.items())
+    return f"{what} with {told}"
 
 
-def _parse(text: str, what: str) -> Any:
-    try:
-        return yaml.load(text, Loader=_UniqueKeyLoader)
-    except yaml.YAMLError as fault:
-        raise VehicleFileError(f"{what}: is not valid YAML: {fault}") from fault
+def _short(value: Any) -> str:
+    text = str(value)
+    return text if len(text) <= _LONGEST_VALUE else f"{text[: _LONGEST_VALUE - 3]}..."

@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
 import numpy as np
-from pydantic import AfterValidator, BeforeValidator, ConfigDict, WrapValidator
+from pydantic import AfterValidator, BeforeValidator, WrapValidator
 
 from uvms_dynamics.config import Config
 
@@ -16,11 +16,7 @@ _TOLERANCE = 1e-9  # relative; values in files are rounded decimals or full doub
 
 
 class Part(Config):
-    """Base of every section of the vehicle file: frozen, known names only, finite numbers only."""
-
-    model_config = ConfigDict(
-        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
-    )
+    """Base of every section of the vehicle file."""
 
 
 def word(*words: str) -> WrapValidator:

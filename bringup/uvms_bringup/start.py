@@ -1,0 +1,48 @@
+"""What must fit together before a run can start: periods, and the start with the vehicle."""
+
+from uvms_bringup.errors import ScenarioError
+from uvms_dynamics import PlantConfig, Vehicle
+from uvms_dynamics.errors import ConfigError
+from uvms_dynamics.plant_config import check_step, initial_joints
+from uvms_dynamics.signals import to_nanoseconds
+from uvms_planner import PlannerConfig
+
+SENSORS = ("imu", "dvl", "pressure", "gps")
+
+
+def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
+    """Check what vehicle, plant and planner only together can have wrong.
+
+    Raises:
+        ScenarioError: a period is no multiple of the one that it must go by, the integration step
+            is unstable with the vehicle, or the joints cannot start where they should.
+    """
+    _check_periods(vehicle, plant, planner)
+    try:
+        check_step(vehicle, plant)
+        initial_joints(vehicle, plant)
+    except ConfigError as fault:
+        raise ScenarioError(f"plant.{fault}") from fault
+
+
+def _check_periods(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
+    step = "plant.step_s", plant.step_s
+    control = "plant.control_period_s", plant.control_period_s
+    rates = {name: getattr(vehicle.sensors, name).rate_hz for name in SENSORS}
+    sensors = {
+        name: (f"the period of vehicle.sensors.{name}.rate_hz = {rate:g}", 1.0 / rate)
+        for name, rate in rates.items()
+    }
+    for sensor in sensors.values():
+        _check_multiple(*sensor, *step)
+    _check_multiple(*control, *step)
+    # The plant stops at control ticks for its commands, and an IMU sample of the tick's own stamp
+    # is what sets the tick going through the graph.
+    _check_multiple(*control, *sensors["imu"])
+    _check_multiple("planner.step_s", planner.step_s, *control)
+
+
+def _check_multiple(name: str, period: float, base_name: str, base: float) -> None:
+    period_ns, base_ns = to_nanoseconds(period), to_nanoseconds(base)
+    if base_ns < 1 or period_ns < base_ns or period_ns % base_ns:
+        raise ScenarioError(f"{name}: {period:g} s is not a multiple of {base_name}: {base:g} s")
