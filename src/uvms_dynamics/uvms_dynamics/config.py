@@ -23,7 +23,17 @@ class Config(BaseModel):
 
 def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
     """One line per fault: the field, the value, and what is allowed."""
-    return "\n".join(_explain_one(item, what, model) for item in error.errors())
+    items = error.errors()
+    places = [item["loc"] for item in items]
+    told = [item for item in items if not _follows_from_others(item, places)]
+    return "\n".join(_explain_one(item, what, model) for item in told)
+
+
+def _follows_from_others(item, places: list[tuple]) -> bool:
+    """Whether a list is only called too short because of faults of its own values."""
+    place = item["loc"]
+    inside = (other[: len(place)] == place and len(other) > len(place) for other in places)
+    return item["type"] == "too_short" and any(inside)
 
 
 def _explain_one(item, what: str, model: type[BaseModel]) -> str:

@@ -1,0 +1,266 @@
+"""The command line: every mistake ends in one error that says what is wrong and what is allowed."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from uvms_bringup.cli import main
+from uvms_bringup.log.read import RunLog
+
+BRINGUP = Path(__file__).parents[2] / "bringup" / "bringup.py"
+COMMANDS = ("run", "simulate", "replay", "report")
+
+
+@pytest.fixture(autouse=True)
+def _elsewhere(tmp_path, monkeypatch):
+    """Whatever a command writes goes to the test's own folder."""
+    monkeypatch.chdir(tmp_path)
+
+
+def error_of(capsys, *arguments) -> str:
+    """Text of the one error of a command that ends with code 2 and has done nothing."""
+    assert main([*arguments]) == 2
+    out, err = capsys.readouterr()
+    assert out == ""
+    assert err.startswith("error: ")
+    assert err.count("error: ") == 1
+    assert "Traceback" not in err
+    assert not Path("runs").exists()
+    return err.removeprefix("error: ").removesuffix("\n")
+
+
+HOVER = "scenario hover.yaml: "
+PERIOD = "is not a multiple of"
+
+
+@pytest.mark.parametrize("command", ["run", "simulate"])
+@pytest.mark.parametrize(
+    ("options", "text"),
+    [
+        (["--duration", "inf"], f"{HOVER}duration_s: Input should be a finite number (got inf)"),
+        (["--duration", "nan"], f"{HOVER}duration_s: Input should be a finite number (got nan)"),
+        (
+            ["--duration", "2e6"],
+            f"{HOVER}duration_s: Input should be less than or equal to 1000000 (got 2000000.0)",
+        ),
+        (["--duration", "-1"], f"{HOVER}duration_s: Input should be greater than 0 (got -1.0)"),
+        (["--seed", "-1"], f"{HOVER}seed: Input should be greater than or equal to 0 (got -1)"),
+        (
+            ["--seed", str(2**63)],
+            f"{HOVER}seed: Input should be less than or equal to {2**63 - 1} (got {2**63})",
+        ),
+        (["--vehicle", "none.yaml"], "none.yaml: cannot be read: No such file or directory"),
+        (
+            ["--vehicle", "foo"],
+            "unknown vehicle 'foo'; choose one of reference_auv, or a YAML file",
+        ),
+        (
+            ["--pace", "realtime:0"],
+            "pace 'realtime:0': choose lockstep, realtime, or realtime:FACTOR"
+            " with 0 < FACTOR <= 1000",
+        ),
+        (
+            ["--pace", "fast"],
+            "pace 'fast': choose lockstep, realtime, or realtime:FACTOR with 0 < FACTOR <= 1000",
+        ),
+        (
+            ["--set", "control.obsrver=false"],
+            f"{HOVER}control.obsrver: Extra inputs are not permitted; known names here:"
+            " arm, compensate_vehicle_motion, compensation, enabled, observer, vehicle",
+        ),
+        (
+            ["--set", "plant.initial_joints_deg=[0]"],
+            "plant.initial_joints_deg: has 1 values for 4 joints",
+        ),
+        (
+            ["--set", "plant.initial_joints_deg=[0, 0, 200, 0]"],
+            "plant.initial_joints_deg: 200 of joint elbow is outside its limits 0 to 140",
+        ),
+        (
+            ["--set", "control.vehicle.k_rate=[.nan, 2, 2, 2, 2, 2]"],
+            f"{HOVER}control.vehicle.k_rate.0: Input should be a finite number (got nan)",
+        ),
+        (
+            ["--set", "plant.current_ned_m_s=[0, inf, 0]"],
+            f"{HOVER}plant.current_ned_m_s.1: Input should be a finite number (got 'inf')",
+        ),
+        (
+            ["--set", "scenario=../../x"],
+            f"{HOVER}scenario: Value error, it becomes a part of a folder's name: begin with a"
+            " letter or digit, and go on with letters, digits, spaces and the signs _ . + -"
+            " (got '../../x')",
+        ),
+        (
+            ["--set", "control.observer"],
+            "--set 'control.observer': write PATH=VALUE, such as control.observer=false",
+        ),
+        (["--set", "=3"], "--set '=3': write PATH=VALUE, such as control.observer=false"),
+        (
+            ["--set", "duration_s=[1"],
+            "--set 'duration_s=[1': '[1': is not valid YAML: line 1, column 3:"
+            " expected ',' or ']', but got '<stream end>'",
+        ),
+        (
+            ["--set", "seed=2020-99-99"],
+            "--set 'seed=2020-99-99': '2020-99-99': is not valid YAML: month must be in 1..12",
+        ),
+        (
+            ["--set", "duration_s.x=3"],
+            "--set 'duration_s.x=3': 'duration_s' is a value, not a group of values",
+        ),
+        (
+            ["--set", "goal.joints={times_s: [1, 2], positions_deg: [[0], [1, 2]]}"],
+            f"{HOVER}goal.joints: Value error, every row of positions_deg needs as many values,"
+            " one a joint; the rows have 1, 2"
+            " (got {'times_s': [1, 2], 'positions_deg': [[0], [1, 2]]})",
+        ),
+        (
+            ["--set", "goal.joints={times_s: [1], positions_deg: [[0, 1]]}"],
+            "goal.joints.positions_deg: its rows have 2 values, the vehicle 'reference_auv' has"
+            " 4 joints: swing, shoulder, elbow, wrist",
+        ),
+        (
+            ["--set", "planner.step_s=0.07"],
+            f"planner.step_s: 0.07 s {PERIOD} plant.control_period_s: 0.05 s",
+        ),
+        (
+            ["--set", "plant.control_period_s=0.012"],
+            f"plant.control_period_s: 0.012 s {PERIOD} plant.step_s: 0.005 s",
+        ),
+        (
+            ["--set", "vehicle.sensors.imu.rate_hz=8"],
+            f"plant.control_period_s: 0.05 s {PERIOD} the period of"
+            " vehicle.sensors.imu.rate_hz = 8: 0.125 s",
+        ),
+        (
+            ["--set", "vehicle.sensors.dvl.rate_hz=60"],
+            f"the period of vehicle.sensors.dvl.rate_hz = 60: 0.0166667 s {PERIOD}"
+            " plant.step_s: 0.005 s",
+        ),
+        (
+            ["--set", "vehicle.hull.mas_kg=190"],
+            "override hull.mas_kg: hull has no 'mas_kg'; choose from spheroid, volume_m3, mass_kg,"
+            " cg_m, cb_m, inertia_kg_m2, added_mass, linear_damping, quadratic_damping",
+        ),
+    ],
+)
+def test_a_wrong_option_is_refused_before_anything_is_made(capsys, command, options, text):
+    assert error_of(capsys, command, "hover", *options) == text
+
+
+def test_a_wrong_value_of_an_override_names_the_override(capsys):
+    text = error_of(capsys, "simulate", "hover", "--set", "vehicle.hull.mass_kg=-3")
+    assert text.endswith(
+        "reference_auv.yaml with hull.mass_kg=-3: hull.mass_kg:"
+        " Input should be greater than 0 (got -3)"
+    )
+
+
+def test_an_unstable_step_names_its_parameter(capsys):
+    slow = [f"vehicle.sensors.{name}.rate_hz=1" for name in ("imu", "dvl", "pressure", "gps")]
+    settings = ["plant.step_s=0.05", "plant.control_period_s=1", "planner.step_s=1", *slow]
+    options = [word for setting in settings for word in ("--set", setting)]
+    text = error_of(capsys, "simulate", "hover", *options)
+    assert text.startswith("plant.step_s: 0.05 s is unstable with the friction of arm.joints.0")
+    assert text.endswith("allowed: at most 0.0181 s")
+
+
+@pytest.mark.parametrize("command", ["run", "simulate"])
+def test_an_unknown_scenario_lists_the_choices(capsys, command):
+    assert error_of(capsys, command, "hoover") == (
+        "unknown scenario 'hoover'; choose one of arm_swing, hover, manipulation, or a YAML file"
+    )
+    assert error_of(capsys, command, "no.yaml") == "scenario file 'no.yaml' does not exist"
+
+
+@pytest.mark.parametrize("command", ["run", "simulate"])
+def test_an_output_folder_that_holds_a_run_is_left_alone(capsys, tmp_path, command):
+    log = tmp_path / "old" / "run.mcap"
+    log.parent.mkdir()
+    log.write_bytes(b"old")
+    text = error_of(capsys, command, "hover", "--output", str(log.parent))
+    assert text == f"{log.parent} holds a run already; give another --output, or remove it"
+    assert [path.name for path in log.parent.iterdir()] == ["run.mcap"]
+    assert log.read_bytes() == b"old"
+
+
+def test_an_output_that_cannot_be_a_folder(capsys, tmp_path):
+    (tmp_path / "file").write_text("x", encoding="utf-8")
+    text = error_of(capsys, "simulate", "hover", "--output", "file/run")
+    assert text == "--output file/run: Not a directory"
+
+
+@pytest.mark.parametrize("command", [["report"], ["replay"], ["replay", "--into", "controller"]])
+def test_a_missing_log(capsys, command):
+    text = error_of(capsys, *command, "no.mcap")
+    assert text == "log no.mcap: cannot be read: No such file or directory"
+
+
+@pytest.mark.parametrize("command", ["report", "replay"])
+def test_a_log_that_is_none(capsys, command):
+    Path("log.mcap").write_text("not a log", encoding="utf-8")
+    assert error_of(capsys, command, "log.mcap") == "log log.mcap: is not an MCAP file"
+
+
+@pytest.mark.parametrize("rate", ["nan", "inf", "-1"])
+def test_a_replay_rate_that_never_ends(capsys, rate):
+    text = error_of(capsys, "replay", "no.mcap", "--rate", rate)
+    assert text == f"--rate {rate}: choose 0 (as fast as possible) or a finite factor above"
+
+
+def test_an_unknown_node_to_replay_into_lists_the_nodes(capsys):
+    assert error_of(capsys, "replay", "no.mcap", "--into", "pilot") == (
+        "--into 'pilot': choose one of plant, navigation, disturbance_observer, motion_planner,"
+        " controller, thrust_allocator"
+    )
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [[], ["hover"], ["run"], ["simulate", "hover", "--seed", "x"], ["run", "hover", "--sed", "1"]],
+)
+def test_words_that_are_no_command_end_in_the_usage(capsys, arguments):
+    with pytest.raises(SystemExit) as end:
+        main(arguments)
+    assert end.value.code == 2
+    err = capsys.readouterr().err
+    assert err.startswith("usage: uvms")
+    assert err.count("error: ") == 1
+
+
+@pytest.mark.parametrize("command", [[], *([name] for name in COMMANDS)])
+def test_every_command_has_help(capsys, command):
+    with pytest.raises(SystemExit) as end:
+        main([*command, "--help"])
+    assert end.value.code == 0
+    text = capsys.readouterr().out
+    assert text.startswith(" ".join(["usage: uvms", *command]))
+    for name in COMMANDS if not command else ("--output",):
+        assert name in text
+
+
+def test_bringup_py_is_uvms_run():
+    found = subprocess.run(
+        [sys.executable, str(BRINGUP), "hover", "--help"],
+        capture_output=True, text=True, check=True,
+    )  # fmt: skip
+    assert found.stdout.startswith("usage: uvms run")
+
+
+def test_simulate_says_which_options_have_no_effect_and_records_its_own_pace(capsys):
+    options = ["--pace", "realtime:2", "--composed", "--duration", "0.1", "--output", "quick"]
+    assert main(["simulate", "hover", *options]) == 0
+    out, err = capsys.readouterr()
+    assert "note: --pace realtime:2 and --composed: no effect on `uvms simulate`" in err
+    assert json.loads(Path("quick/summary.json").read_text(encoding="utf-8"))["completed"]
+    assert "log: " in out
+    assert RunLog.open("quick/run.mcap").run["pace"] == "lockstep"
+
+
+def test_simulate_says_nothing_of_options_that_are_not_given(capsys):
+    options = ["--pace", "lockstep", "--duration", "0.1", "--output", "quick"]
+    assert main(["simulate", "hover", *options]) == 0
+    assert "note:" not in capsys.readouterr().err

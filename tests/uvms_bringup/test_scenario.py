@@ -1,0 +1,233 @@
+"""Scenarios: what a file may say, what follows from it, and what is refused with which words."""
+
+import numpy as np
+import pytest
+from pydantic import BaseModel, ValidationError
+
+from uvms_bringup.errors import ScenarioError
+from uvms_bringup.scenario import (
+    JointMotion,
+    Scenario,
+    known_scenarios,
+    load_scenario,
+    start_of_end_effector,
+)
+from uvms_dynamics import PlantConfig, Vehicle, dump_vehicle, end_effector
+from uvms_dynamics.errors import ConfigError
+from uvms_dynamics.model import build_model
+from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_observer import NavigationConfig
+
+SHORT = "duration_s: 1.0\n"
+
+
+def written(tmp_path, text: str | bytes, name: str = "mine.yaml") -> str:
+    path = tmp_path / name
+    path.write_bytes(text if isinstance(text, bytes) else text.encode())
+    return str(path)
+
+
+def refusal(name: str, *settings: str) -> str:
+    with pytest.raises(ScenarioError) as fault:
+        load_scenario(name, settings)
+    return str(fault.value)
+
+
+def two_joints(vehicle: Vehicle) -> Vehicle:
+    """The vehicle with the first two joints of its arm only."""
+    data = vehicle.model_dump(mode="json")
+    arm = data["arm"]
+    arm |= {name: arm[name][:2] for name in ("joints", "links", "stowed_deg")}
+    return vehicle_from_data(data)
+
+
+@pytest.mark.parametrize("name", known_scenarios())
+def test_what_comes_with_the_project_can_start(name):
+    scenario = load_scenario(name)
+    vehicle = scenario.load_vehicle()
+    goal = scenario.goal.build(vehicle, scenario.plant)
+    assert (goal is None) == (name == "hover")
+    assert scenario.duration_s > scenario.goal.duration_s
+
+
+def test_what_a_run_writes_is_the_same_scenario_again():
+    scenario = load_scenario("manipulation", ["plant.initial_position_m=[3, 4, 5]"])
+    assert Scenario.model_validate(scenario.model_dump(mode="json")) == scenario
+
+
+def test_a_file_in_another_encoding(tmp_path):
+    path = written(tmp_path, b"duration_s: 1.0\ndescription: gr\xfcn\n")
+    assert refusal(path) == (
+        f"scenario {path}: cannot be read: byte 31 is not UTF-8; save the file as UTF-8"
+    )
+
+
+def test_a_key_given_twice(tmp_path):
+    path = written(tmp_path, SHORT + "plant:\n  step_s: 0.005\n  step_s: 0.01\n")
+    assert refusal(path) == (
+        f"scenario {path}: is not valid YAML: line 4, column 3: the key 'step_s' is given twice"
+    )
+
+
+def test_a_file_that_is_no_mapping(tmp_path):
+    path = written(tmp_path, "- 1\n")
+    assert refusal(path) == f"scenario {path}: a scenario is a mapping of names to values"
+
+
+def test_overrides_that_are_no_mapping_cannot_be_added_to(tmp_path):
+    path = written(tmp_path, SHORT + "vehicle_overrides: 5\n")
+    assert refusal(path, "vehicle.hull.mass_kg=190") == (
+        "--set 'vehicle.hull.mass_kg=190': 'vehicle_overrides' is a value, not a group of values"
+    )
+
+
+def test_a_setting_adds_to_the_overrides_of_the_file(tmp_path):
+    path = written(tmp_path, SHORT + "vehicle_overrides: {thrusters.main.limit_n: 50}\n")
+    vehicle = load_scenario(path, ["vehicle.arm.joints.wrist.effort_limit_nm=7"]).load_vehicle()
+    assert vehicle.thrusters[0].limit_n == 50.0
+    assert vehicle.arm.joints[3].effort_limit_nm == 7.0
+
+
+@pytest.mark.parametrize("name", ["../x", "/x", ".x", "", "a/b", "a\nb", "-x"])
+def test_a_name_that_leads_elsewhere_is_refused(name):
+    with pytest.raises(ValidationError, match="a part of a folder's name"):
+        Scenario(scenario=name, duration_s=1.0)
+
+
+@pytest.mark.parametrize("name", ["hover", "my run 2", "Versuch_ä", "v1.2+b-c"])
+def test_a_plain_name_is_taken(name):
+    assert Scenario(scenario=name, duration_s=1.0).scenario == name
+
+
+class TestNavigationStart:
+    def test_is_the_plants_unless_given(self):
+        scenario = load_scenario("hover", ["plant.initial_position_m=[30, -20, 900]"])
+        assert scenario.navigation.initial_position_m == (30.0, -20.0, 900.0)
+        assert Scenario(scenario="x", duration_s=1.0).navigation.initial_position_m == (0, 0, 10)
+
+    def test_leaves_the_other_values_alone(self):
+        scenario = load_scenario("hover", ["navigation.latency_s=0.5"])
+        assert scenario.navigation == NavigationConfig(
+            latency_s=0.5, initial_position_m=(0.0, 0.0, 10.0)
+        )
+
+    def test_may_be_wrong_on_purpose(self):
+        settings = ["navigation.initial_position_m=[5, 0, 0]"]
+        scenario = load_scenario("hover", settings)
+        assert scenario.navigation.initial_position_m == (5.0, 0.0, 0.0)
+        assert scenario.plant.initial_position_m == (0.0, 0.0, 10.0)
+
+    def test_with_a_wrong_plant_the_plant_alone_is_to_blame(self):
+        text = refusal("hover", "plant.initial_position_m=[1]")
+        assert {line.split(": ")[1].rsplit(".", 1)[0] for line in text.splitlines()} == {
+            "plant.initial_position_m"
+        }
+
+
+class TestJointMotion:
+    @pytest.mark.parametrize(
+        ("times", "positions", "text"),
+        [
+            ([], [], "at least 1 item"),
+            ([0.0], [[1.0]], r"times_s must be > 0 and increasing, are \[0.0\]"),
+            ([2.0, 2.0], [[1.0], [1.0]], r"times_s must be > 0 and increasing, are \[2.0, 2.0\]"),
+            ([1.0, 2.0], [[1.0]], "positions_deg has 1 rows for 2 times"),
+            ([1.0, 2.0], [[1.0], [1.0, 2.0]], "the rows have 1, 2"),
+            ([1.0], [[]], "the rows have 0"),
+            ([1.0], [[float("nan")]], "finite number"),
+        ],
+    )
+    def test_a_table_with_holes_is_refused(self, times, positions, text):
+        with pytest.raises(ValidationError, match=text):
+            JointMotion(times_s=times, positions_deg=positions)
+
+    def test_in_si_units(self):
+        goal = JointMotion(times_s=(1.0, 3.0), positions_deg=((90.0, 0.0), (0.0, 180.0))).goal()
+        np.testing.assert_array_equal(goal.times, [1.0, 3.0])
+        np.testing.assert_allclose(goal.positions, [[np.pi / 2, 0.0], [0.0, np.pi]])
+
+
+class TestOtherVehicles:
+    def test_hover_takes_any_number_of_joints(self, tmp_path):
+        vehicle = two_joints(load_scenario("hover").load_vehicle())
+        path = written(tmp_path, dump_vehicle(vehicle), "vehicle.yaml")
+        loaded = load_scenario("hover", vehicle=path).load_vehicle()
+        assert loaded.n_joints == 2
+
+    def test_a_motion_of_other_joints_is_refused(self, tmp_path):
+        vehicle = two_joints(load_scenario("hover").load_vehicle())
+        scenario = load_scenario("arm_swing")
+        with pytest.raises(ScenarioError) as fault:
+            scenario.goal.build(vehicle, scenario.plant)
+        assert str(fault.value) == (
+            "goal.joints.positions_deg: its rows have 4 values, the vehicle 'reference_auv'"
+            " has 2 joints: swing, shoulder"
+        )
+
+    def test_a_start_of_other_joints_is_refused(self, tmp_path):
+        vehicle = two_joints(load_scenario("hover").load_vehicle())
+        path = written(tmp_path, dump_vehicle(vehicle), "vehicle.yaml")
+        with pytest.raises(ScenarioError) as fault:
+            load_scenario("manipulation", vehicle=path).load_vehicle()
+        assert str(fault.value) == "plant.initial_joints_deg: has 4 values for 2 joints"
+
+
+def test_the_end_effector_starts_with_the_arm_stowed_where_no_joints_are_given():
+    vehicle = load_scenario("hover").load_vehicle()
+    position, _ = start_of_end_effector(vehicle, PlantConfig(initial_position_m=(1.0, 2.0, 3.0)))
+    stowed = np.radians(vehicle.arm.stowed_deg)
+    level = np.array([0.0, 0.0, 0.0, 1.0])
+    expected, _ = end_effector(build_model(vehicle), np.array([1.0, 2.0, 3.0]), level, stowed)
+    np.testing.assert_allclose(position, expected)
+    with pytest.raises(ConfigError, match="has 1 values for 4 joints"):
+        start_of_end_effector(vehicle, PlantConfig(initial_joints_deg=(0.0,)))
+
+
+@pytest.mark.parametrize(
+    "settings",
+    [
+        ["plant.step_s=0.0025"],
+        ["plant.control_period_s=0.1"],
+        ["plant.control_period_s=0.01"],
+        ["planner.step_s=0.05"],
+        ["vehicle.sensors.imu.rate_hz=200"],
+        ["vehicle.sensors.imu.rate_hz=20"],
+    ],
+)
+def test_periods_that_fit_are_taken(settings):
+    assert load_scenario("hover", settings).load_vehicle().n_joints == 4
+
+
+def numbers(value):
+    """Every float in a configuration."""
+    if isinstance(value, BaseModel):
+        value = dict(value)
+    if isinstance(value, dict):
+        value = tuple(value.values())
+    if isinstance(value, (tuple, list)):
+        for item in value:
+            yield from numbers(item)
+    elif isinstance(value, float):
+        yield value
+
+
+def test_every_default_is_finite():
+    found = list(numbers(Scenario(scenario="x", duration_s=1.0)))
+    assert len(found) > 100
+    assert np.isfinite(found).all()
+
+
+def paths_to_floats(values, prefix=""):
+    for key, value in values.items():
+        if isinstance(value, dict):
+            yield from paths_to_floats(value, f"{prefix}{key}.")
+        elif isinstance(value, float):
+            yield f"{prefix}{key}"
+
+
+@pytest.mark.parametrize("word", [".nan", ".inf", "-.inf", "nan"])
+def test_no_parameter_takes_what_is_not_finite(word):
+    paths = list(paths_to_floats(load_scenario("hover").model_dump()))
+    assert len(paths) > 50
+    for path in paths:
+        assert f"{path}: Input should be a finite number" in refusal("hover", f"{path}={word}")
