@@ -240,6 +240,7 @@ def test_the_installed_share_folder_is_found(tmp_path, monkeypatch):
     share.mkdir(parents=True)
     (share / "reference_auv.yaml").write_text("name: x\n", encoding="utf-8")
     monkeypatch.setattr(locate, "__file__", str(tmp_path / "lib" / "locate.py"))
+    monkeypatch.setattr(locate.sys, "prefix", "/nowhere/else")
     monkeypatch.setenv("AMENT_PREFIX_PATH", f"/nowhere:{tmp_path}")
     assert locate.reference_file() == share / "reference_auv.yaml"
     monkeypatch.setenv("AMENT_PREFIX_PATH", "/nowhere")

@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.task import Future
@@ -21,8 +22,10 @@ from uvms_dynamics.ros.node import qos_profile
 from uvms_dynamics.ros.spin import Spinner, start
 from uvms_dynamics.signals import to_seconds
 
-DISCOVERY_S = 1.0
-"""Wall time that others get to find the publishers before the first message."""
+DISCOVERY_S = 3.5
+"""Wall time that others get at least to find the publishers: DDS announces itself every 3 s."""
+DISCOVERY_PATIENCE_S = 8.0
+"""Wall time that they get at most, and that listeners get to take the last messages."""
 LEAST_SLEEP_S = 1e-3
 MESSAGES_A_SPIN = 200
 
@@ -89,6 +92,26 @@ class Player(Node):
         if publisher is not None:
             publisher.publish(data)
 
+    def found_all(self) -> bool:
+        """Whether every listener that the graph shows has been found."""
+        return all(
+            publisher.get_subscription_count() >= self.count_subscribers(name)
+            for name, publisher in self._publishers_of.items()
+        )
+
+    def flush(self) -> None:
+        """Wait until the listeners have what is under way."""
+        for publisher in self._publishers_of.values():
+            publisher.wait_for_all_acked(Duration(seconds=DISCOVERY_PATIENCE_S))
+
+
+def _find_listeners(player: Player, spinner: Spinner) -> None:
+    # What is sent before a listener is found is lost to it.
+    end = time.monotonic() + DISCOVERY_PATIENCE_S
+    spinner.spin_for(Future(), DISCOVERY_S)
+    while not player.found_all() and time.monotonic() < end and not spinner.done.done():
+        spinner.spin_for(Future(), 0.05)
+
 
 class Metronome:
     """Keeps simulation time to wall time times a rate; rate 0 does not wait."""
@@ -117,7 +140,7 @@ def publish(run: RunLog, rate: float) -> int:
         print(f"left out: {lack}", flush=True)
     line = ProgressLine(_end_of(run))
     try:
-        spinner.spin_for(Future(), DISCOVERY_S)
+        _find_listeners(player, spinner)
         return _publish_all(run, player, spinner, Metronome(rate), line)
     finally:
         line.end()
@@ -142,8 +165,7 @@ def _publish_all(
         if spinner.done.done():
             return 130
         player.play(name, data)
-    # Reliable publishers deliver what is under way before they go.
-    spinner.spin_for(Future(), DISCOVERY_S)
+    player.flush()
     return 0
 
 

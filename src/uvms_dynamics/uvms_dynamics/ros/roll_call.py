@@ -1,4 +1,4 @@
-"""Asks the nodes of the loop whether each has found its peers: a lost first tick stalls lockstep."""
+"""Asks the nodes whether each has found its peers: a lost first tick would stall lockstep."""
 
 from collections.abc import Iterable
 from typing import Any
