@@ -22,6 +22,7 @@ from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
 from uvms_bringup.summary import summarise
 from uvms_dynamics import Vehicle, dump_vehicle
+from uvms_dynamics.errors import UvmsError
 from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds
 
 Goal = PathGoal | JointGoal | None
@@ -104,10 +105,23 @@ class Session:
             self._describe(log, config)
             try:
                 completed = run(log, progress)
+            except UvmsError as fault:
+                self._give_up(log, clock, fault)
+                raise
             finally:
                 line.end()
         clock.stop()
         return self._summarise(completed, clock)
+
+    def _give_up(self, log: LogWriter, clock: Stopwatch, fault: UvmsError) -> None:
+        """Keep what was recorded, with the reason; a run that never began leaves no log."""
+        log.metadata("fault", {"message": fault})
+        log.close()
+        clock.stop()
+        if clock.run_s > 0.0:
+            self._summarise(False, clock)
+        else:
+            log.path.unlink()
 
     def _describe(self, log: LogWriter, config: str) -> None:
         log.attach("config.yaml", config, "application/yaml")

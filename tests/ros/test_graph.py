@@ -47,6 +47,15 @@ def test_the_graph_in_lockstep_equals_the_simulation(pair, simulated, request):
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9, err_msg=topic.name)
 
 
+def test_the_same_seed_gives_the_same_messages_on_every_topic(separate, composed):
+    """All but /diagnostics, which tells wall times."""
+    compared = [topic for topic in topics.ALL if topic is not topics.DIAGNOSTICS]
+    first, second = separate.log, composed.log
+    for topic in compared:
+        name = first.full_name(topic)
+        assert list(first.raw([name])) == list(second.raw([name])), topic.name
+
+
 def test_a_lockstep_run_is_complete(separate):
     summary = separate.summary
     assert summary["completed"] is True

@@ -14,6 +14,8 @@ class ThrustAllocatorNode(UvmsNode):
     def __init__(self, **options) -> None:
         super().__init__("thrust_allocator", **options)
         self._allocator = ThrustAllocator(self.vehicle, self.config(AllocatorConfig))
+        if self._allocator.warning:
+            self.get_logger().warning(self._allocator.warning)
         self.connect({topics.WRENCH_COMMAND: Same()}, topics.WRENCH_COMMAND, self._step)
 
     def _step(self, tick: Tick) -> None:

@@ -180,7 +180,7 @@ class PlantNode(UvmsNode):
     def _stale(self, name: str) -> bool:
         command = self._commands.get(name)
         allowed = 0 if self.lockstep else to_nanoseconds(self._pace.stale_s)
-        return command is None or self._plant.stamp - command.stamp > allowed
+        return command is None or not 0 <= self._plant.stamp - command.stamp <= allowed
 
     def _thrust(self) -> ThrusterCommand:
         if self._stale(topics.THRUSTER_COMMAND.name):
