@@ -1,6 +1,7 @@
 """The report draws every figure and writes a page that needs nothing else."""
 
 import base64
+import html
 import json
 import re
 
@@ -8,7 +9,9 @@ import pytest
 from matplotlib.image import imread
 from synthetic import Known, write_log
 
+from uvms_bringup.analysis import Analysis
 from uvms_bringup.errors import LogError
+from uvms_bringup.log.read import RunLog
 from uvms_bringup.log.writer import LogWriter
 from uvms_bringup.report import FIGURES, report
 
@@ -75,3 +78,38 @@ def test_a_folder_that_cannot_be_made_is_named(folder, tmp_path):
     (tmp_path / "file").write_text("")
     with pytest.raises(LogError, match="cannot be written"):
         report(folder / "run.mcap", tmp_path / "file" / "out")
+
+
+def damaged_log(folder, tmp_path, whole: bytes, damaged: bytes):
+    assert len(whole) == len(damaged)
+    data = (folder / "run.mcap").read_bytes()
+    (tmp_path / "run.mcap").write_bytes(data.replace(whole, damaged, 1))
+    return tmp_path / "run.mcap"
+
+
+def test_a_damaged_attachment_costs_only_what_needs_it(tmp_path, folder):
+    log = damaged_log(folder, tmp_path, b"environment:", b"environm\xff\xfft:")
+    page = html.unescape(report(log).read_text(encoding="utf-8"))
+    assert "No figure: " in page
+    assert "its attachment 'vehicle.yaml' is damaged" in page
+    assert (tmp_path / "navigation.png").is_file()
+
+
+@pytest.mark.parametrize(
+    ("whole", "damaged", "reason"),
+    [
+        (b"environment:", b"environmxxt:", "its attachment 'vehicle.yaml': environment: Field"),
+        (b"environment:", b"environment[", "its attachment 'vehicle.yaml': is not valid YAML"),
+        (b"\nseed: 7\n", b"\nseed: [\n", "its attachment 'config.yaml': is not valid YAML"),
+        (
+            b"scenario: synthetic\nseed: 7\n",
+            b"- - - - - synthetic\n-  - 7\n\n",
+            "its attachment 'config.yaml' is not a mapping",
+        ),
+    ],
+)
+def test_an_attachment_that_says_something_else_is_named(tmp_path, folder, whole, damaged, reason):
+    log = RunLog.open(damaged_log(folder, tmp_path, whole, damaged))
+    read = log.configuration if "config" in reason else lambda: Analysis(log).vehicle
+    with pytest.raises(LogError, match=re.escape(reason)):
+        read()

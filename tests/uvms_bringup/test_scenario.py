@@ -12,6 +12,7 @@ from uvms_bringup.scenario import (
     load_scenario,
     start_of_end_effector,
 )
+from uvms_bringup.simulate import simulate
 from uvms_dynamics import PlantConfig, Vehicle, dump_vehicle, end_effector
 from uvms_dynamics.errors import ConfigError
 from uvms_dynamics.model import build_model
@@ -231,3 +232,19 @@ def test_no_parameter_takes_what_is_not_finite(word):
     assert len(paths) > 50
     for path in paths:
         assert f"{path}: Input should be a finite number" in refusal("hover", f"{path}={word}")
+
+
+def test_a_deep_start_is_known_to_navigation():
+    """With a start at the surface the filter would refuse the pressure for seconds."""
+    scenario = load_scenario("hover", ["plant.initial_position_m=[0, 0, 900]"], duration_s=0.2)
+    errors = []
+    simulate(
+        scenario,
+        scenario.load_vehicle(),
+        None,
+        observe=lambda tick: errors.append(
+            tick.odometry.position[2] - tick.truth.odometry.position[2]
+        ),
+    )
+    assert len(errors) == 5
+    assert np.abs(errors).max() < 0.1
