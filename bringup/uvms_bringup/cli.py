@@ -61,7 +61,7 @@ def parser() -> argparse.ArgumentParser:
 def _add_run(commands: Any, name: str, action: Any, text: str) -> None:
     scenarios = ", ".join(known_scenarios())
     beside = "" if action is run else " (for `uvms run`; has no effect here)"
-    command = commands.add_parser(name, help=text, description=text.capitalize() + ".")
+    command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
     command.set_defaults(do=action)
     add = command.add_argument
     add("scenario", metavar="SCENARIO", help=f"{scenarios}, or a YAML file of your own")
@@ -93,7 +93,7 @@ def _add_run(commands: Any, name: str, action: Any, text: str) -> None:
 
 def _add_replay(commands: Any) -> None:
     text = "publish a log again with /clock, or feed one node with its recorded inputs"
-    command = commands.add_parser("replay", help=text, description=text.capitalize() + ".")
+    command = commands.add_parser("replay", help=text, description=f"{text[0].upper()}{text[1:]}.")
     command.set_defaults(do=replay)
     add = command.add_argument
     add("log", metavar="RUN.mcap", help="log of a run")
@@ -115,7 +115,7 @@ def _add_replay(commands: Any) -> None:
 
 def _add_report(commands: Any) -> None:
     text = "figures and an HTML page about a run"
-    command = commands.add_parser("report", help=text, description=text.capitalize() + ".")
+    command = commands.add_parser("report", help=text, description=f"{text[0].upper()}{text[1:]}.")
     command.set_defaults(do=report)
     command.add_argument("log", metavar="RUN.mcap", help="log of a run")
     command.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
@@ -173,7 +173,9 @@ def report(options: argparse.Namespace) -> int:
 
 def _tell(session: Session, summary: dict[str, Any]) -> int:
     print(json.dumps(summary, indent=2))
-    print(f"log: {session.folder / 'run.mcap'}\nfigures: uvms report {session.folder / 'run.mcap'}")
+    print(
+        f"log: {session.folder / 'run.mcap'}\nfigures: {sys.argv[0]} report {session.folder / 'run.mcap'}"
+    )
     return 0 if summary["completed"] else 1
 
 
