@@ -173,9 +173,8 @@ def report(options: argparse.Namespace) -> int:
 
 def _tell(session: Session, summary: dict[str, Any]) -> int:
     print(json.dumps(summary, indent=2))
-    print(
-        f"log: {session.folder / 'run.mcap'}\nfigures: {sys.argv[0]} report {session.folder / 'run.mcap'}"
-    )
+    log = session.folder / "run.mcap"
+    print(f"log: {log}\nfigures: {sys.argv[0]} report {log}")
     return 0 if summary["completed"] else 1
 
 
