@@ -100,8 +100,12 @@ def _effort(run: Analysis) -> dict[str, Any]:
 
 
 def self_disturbance(run: Analysis) -> Figures:
-    """True restoring plus coupling wrench, eq. (16), root mean square of its length."""
-    wrench = run.disturbance.restoring + run.disturbance.coupling
+    """True restoring plus coupling wrench, eq. (16), root mean square of its length.
+
+    The first sample is left out: at the start no joint torque is applied yet and the arm sets off
+    under its own weight, which no planner and no controller can have an effect on.
+    """
+    wrench = (run.disturbance.restoring + run.disturbance.coupling)[1:]
     return {
         "force_rms_n": rms_and_max(wrench[:, :3])["rms"],
         "moment_rms_nm": rms_and_max(wrench[:, 3:])["rms"],
