@@ -57,7 +57,12 @@ def test_agrees_with_scipy_lsq_linear(seed, m):
     stacked, rhs, hessian, g, lower, upper = problem(seed, m)
     u, _, _ = solve(hessian, g, lower, upper)
     oracle = lsq_linear(stacked, rhs, (lower, upper + 1e-12), method="bvls", tol=1e-14).x
-    assert np.allclose(u, oracle, atol=1e-6)
+
+    def cost(x):
+        return np.sum((stacked @ x - rhs) ** 2)
+
+    # By cost: bvls now and then stops short of the optimum, and is then the worse of the two.
+    assert cost(u) <= cost(oracle) + 1e-9
 
 
 @settings(max_examples=60, deadline=None)
