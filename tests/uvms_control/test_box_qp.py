@@ -62,7 +62,7 @@ def test_agrees_with_scipy_lsq_linear(seed, m):
         return np.sum((stacked @ x - rhs) ** 2)
 
     # By cost: bvls now and then stops short of the optimum, and is then the worse of the two.
-    assert cost(u) <= cost(oracle) + 1e-9
+    assert cost(u) <= (1.0 + 1e-9) * cost(oracle) + 1e-9
 
 
 @settings(max_examples=60, deadline=None)
