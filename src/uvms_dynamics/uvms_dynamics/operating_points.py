@@ -5,7 +5,9 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.integrator import JOINTS, VELOCITY
+from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.kernels import inverse_dynamics
+from uvms_dynamics.model import Model
 from uvms_dynamics.plant_config import PlantConfig, initial_state
 from uvms_dynamics.signals import Array
 from uvms_dynamics.thrusters import thruster_matrix
@@ -21,27 +23,39 @@ _FASTEST = np.array([10.0] * _LINEAR + [2.0 * np.pi] * _LINEAR)
 """Bound of the top speed, m/s and rad/s: no hull gets there that has next to no damping."""
 
 
+_ENTERING = 1e-2
+"""How deep a joint is that strikes its stop, as a part of how deep its drive presses it."""
+
+
 class Point(NamedTuple):
     """A state (nx,) of the integrator, the joint torques (n,) that go with it, and what it is."""
 
     name: str
     state: Array
     effort: Array
+    strikes: bool = False  # a stop that begins within a step
 
 
-def operating_points(vehicle: Vehicle, config: PlantConfig) -> Iterator[Point]:
+def operating_points(vehicle: Vehicle, model: Model, config: PlantConfig) -> Iterator[Point]:
     """The start, rest in several poses, joints against their stops, and the greatest speeds."""
-    idle = np.zeros(vehicle.n_joints)
-    yield Point("at the start", initial_state(vehicle, config), idle)
     stowed = np.radians(vehicle.arm.stowed_deg)
-    yield Point("at rest with the arm stowed", _state(vehicle, stowed), idle)
-    for q in _poses(vehicle):
-        where = ", ".join(f"{angle:.0f}" for angle in np.degrees(q))
-        yield Point(f"at rest with the joints at {where} degrees", _state(vehicle, q), idle)
+    yield _held(model, "at the start", initial_state(vehicle, config), vehicle.n_joints)
+    for name, state in _at_rest(vehicle, stowed):
+        yield _held(model, name, state, vehicle.n_joints)
     yield from _against_the_stops(vehicle)
     rates = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
-    yield Point("with the joints at their rate limits", _state(vehicle, stowed, rates), idle)
-    yield from _at_top_speed(vehicle, stowed)
+    moving = _state(vehicle, stowed, rates)
+    yield _held(model, "with the joints at their rate limits", moving, vehicle.n_joints)
+    for name, state in _at_top_speed(vehicle, stowed):
+        yield _held(model, name, state, vehicle.n_joints)
+
+
+def _held(model: Model, name: str, state: Array, n: int) -> Point:
+    """The point with the torques that keep the joints at their rates but for friction."""
+    nu_r, q, q_dot = state[VELOCITY:JOINTS], state[JOINTS : JOINTS + n], state[JOINTS + n :][:n]
+    quaternion, still = state[QUATERNION:VELOCITY], np.zeros(n)
+    force = inverse_dynamics(model, quaternion, nu_r, np.zeros(6), q, q_dot, still)
+    return Point(name, state, force[6:])
 
 
 def _state(vehicle: Vehicle, q: Array, q_dot: Array | float = 0.0) -> Array:
@@ -52,6 +66,13 @@ def _state(vehicle: Vehicle, q: Array, q_dot: Array | float = 0.0) -> Array:
     state[JOINTS : JOINTS + n] = q
     state[JOINTS + n : JOINTS + 2 * n] = q_dot
     return state
+
+
+def _at_rest(vehicle: Vehicle, stowed: Array) -> Iterator[tuple[str, Array]]:
+    yield "at rest with the arm stowed", _state(vehicle, stowed)
+    for q in _poses(vehicle):
+        where = ", ".join(f"{angle:.0f}" for angle in np.degrees(q))
+        yield f"at rest with the joints at {where} degrees", _state(vehicle, q)
 
 
 def _poses(vehicle: Vehicle) -> Array:
@@ -67,17 +88,18 @@ def _poses(vehicle: Vehicle) -> Array:
 
 
 def _against_the_stops(vehicle: Vehicle) -> Iterator[Point]:
-    """All joints pressed by their drives, and driven in at their rate limits, at either end."""
+    """All joints pressed by their drives, and striking at their rate limits, at either end."""
+    joints, depths = vehicle.arm.joints, stop_depths(vehicle)
+    pressed = [j.effort_limit_nm if j.stop_stiffness_nm_rad else 0.0 for j in joints]
+    rates = np.radians([j.rate_limit_deg_s for j in joints])
     for sign, end in ((1.0, "upper"), (-1.0, "lower")):
-        effort = sign * np.array(
-            [j.effort_limit_nm if j.stop_stiffness_nm_rad else 0.0 for j in vehicle.arm.joints]
-        )
-        limit = np.radians([getattr(joint, f"{end}_deg") for joint in vehicle.arm.joints])
-        q = limit + sign * stop_depths(vehicle)
-        rates = sign * np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
-        name = f"the joints against their {end} stops"
-        yield Point(f"pressing {name} at effort_limit_nm", _state(vehicle, q), effort)
-        yield Point(f"driving {name} at their rate limits", _state(vehicle, q, rates), effort)
+        limit = np.radians([getattr(j, f"{end}_deg") for j in joints])
+        pressing = _state(vehicle, limit + sign * depths)
+        striking = _state(vehicle, limit + sign * _ENTERING * depths, sign * rates)
+        name = f"the joints against their {end} stops at effort_limit_nm"
+        yield Point(f"pressing {name}", pressing, sign * np.array(pressed))
+        name = f"the joints striking their {end} stops at their rate limits"
+        yield Point(name, striking, np.zeros(len(joints)), strikes=True)
 
 
 def stop_depths(vehicle: Vehicle) -> Array:
@@ -92,7 +114,7 @@ def stop_depths(vehicle: Vehicle) -> Array:
     )
 
 
-def _at_top_speed(vehicle: Vehicle, q: Array) -> Iterator[Point]:
+def _at_top_speed(vehicle: Vehicle, q: Array) -> Iterator[tuple[str, Array]]:
     """Through the water along each axis as fast as all thrusters push the hull alone."""
     hull = vehicle.hull
     limits = [thruster.limit_n for thruster in vehicle.thrusters]
@@ -104,7 +126,7 @@ def _at_top_speed(vehicle: Vehicle, q: Array) -> Iterator[Point]:
         state = _state(vehicle, q)
         state[VELOCITY + k] = speed = min(speed, _FASTEST[k])
         unit = "m/s" if k < _LINEAR else "rad/s"
-        yield Point(f"at {speed:.3g} {unit} of {axis}", state, np.zeros(len(q)))
+        yield f"at {speed:.3g} {unit} of {axis}", state
 
 
 def _terminal_speed(force: float, linear: float, quadratic: float) -> float:
