@@ -16,7 +16,7 @@ print(
 )
 for shape in ("sphere:0.25", "spheroid:2.4,0.38", "ellipsoid:1,0.5,0.3"):
     print(f"\n{shape:19}" + "".join(f"{term:>15}" for term in "XYZKMN"))
-    for panels in (400, 1000, 2500):
+    for panels in (250, 800, 1600):
         body = shape_body(shape, AT_ITS_CENTRE, WATER, panels)
         found = estimate(body.levels, body.density)
         exact = np.diag(next(iter(body.rows.values())))

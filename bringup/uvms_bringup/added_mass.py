@@ -24,6 +24,7 @@ from uvms_dynamics.panel_method import (
     vehicle_body,
 )
 from uvms_dynamics.panel_method.bodies import MOST_HALVED, PANELS, SEA_WATER
+from uvms_dynamics.panel_method.panels import LONG, longest_edge, mean_edge
 from uvms_dynamics.panel_method.solids import WORDS
 from uvms_dynamics.panel_method.solver import memory_needed
 from uvms_dynamics.signals import Array
@@ -157,7 +158,18 @@ def _report(body: Body, found: AddedMassEstimate) -> list[str]:
     for name, matrix in body.rows.items():
         short, _, kind = name.partition(",")
         lines += [_row(short, np.diag(matrix)) + kind]
-    return [*lines, "", *_remarks(found)]
+    return [*lines, "", *_remarks(found), *_long_edges(body)]
+
+
+def _long_edges(body: Body) -> list[str]:
+    triangles = body.levels[0].triangles()
+    longest, mean = longest_edge(triangles), mean_edge(triangles)
+    if not body.is_mesh or longest < 2.0 * LONG * mean:
+        return []
+    return [
+        f"some panels are long and thin: an edge of {longest:.2g} m where {mean:.2g} m is usual;",
+        "a mesh of compact triangles, or a larger --panels, is surer",
+    ]
 
 
 def _remarks(found: AddedMassEstimate) -> list[str]:

@@ -219,6 +219,17 @@ def test_long_thin_triangles_are_cut_before_they_are_solved(stl):
     np.testing.assert_allclose(np.diag(found.matrix)[3:], np.diag(same.matrix)[3:], rtol=0.04)
 
 
+def test_needles_are_cut_even_where_there_are_panels_enough(stl):
+    """A capsule with twelve sides a metre long: as they are, its rotation is far too small."""
+    mesh = trimesh.creation.capsule(height=1.0, radius=0.1, count=[12, 12])
+    capsule = Panels(np.asarray(mesh.vertices), np.asarray(mesh.faces)[:, [0, 1, 2, 2]])
+    sure = np.diag(solve(with_short_edges(capsule, 2000), RHO))[:5]
+    raw = np.diag(solve(capsule, RHO))[:5]
+    assert raw[3] < 0.8 * sure[3]
+    found = estimate(mesh_body(stl(capsule), HERE, RHO, 800, scale=1e-3).levels, RHO)
+    np.testing.assert_allclose(np.diag(found.matrix)[:5], sure, rtol=0.03)
+
+
 def trimesh_box(*lengths):
     mesh = trimesh.creation.box(lengths)
     return np.asarray(mesh.vertices), np.asarray(mesh.faces)[:, [0, 1, 2, 2]]
@@ -240,12 +251,27 @@ def with_inner_wall(panels):
     return Panels(vertices, np.concatenate([panels.faces, inner.faces + len(panels.vertices)]))
 
 
+def with_another(panels, shift, size=1.0):
+    vertices = np.concatenate([panels.vertices, size * panels.vertices + shift])
+    return Panels(vertices, np.concatenate([panels.faces, panels.faces + len(panels.vertices)]))
+
+
+def with_battery(panels):
+    return with_another(panels, [0.0, 0.0, 0.0], 0.5)
+
+
+def with_thruster_that_overlaps(panels):
+    return with_another(panels, [0.4, 0.3, 0.2])
+
+
 @pytest.mark.parametrize(
     ("spoil", "text"),
     [
         (with_hole, "the surface is not closed: 3 of "),
         (with_one_turned, "neighbouring panels point to different sides at 3 edges"),
         (with_inner_wall, "2 separate surfaces, one of which encloses -"),
+        (with_battery, "2 separate surfaces, two of which overlap or lie within"),
+        (with_thruster_that_overlaps, "two of which overlap .*at "),
         (Panels.flipped, "the normals point inwards .enclosed volume -0.06.* --flip"),
     ],
 )
@@ -253,6 +279,15 @@ def test_names_what_is_wrong_with_a_mesh(stl, spoil, text):
     triangles = Panels(*trimesh_box(0.5, 0.4, 0.3))
     with pytest.raises(PanelMethodError, match=text):
         load_panels(stl(spoil(triangles), unit=1.0))
+
+
+def test_two_bodies_apart_are_one_vehicle(stl):
+    """Far from each other, each carries what it carries alone."""
+    one = Panels(*trimesh_box(0.5, 0.4, 0.3))
+    file = stl(with_another(one, [30.0, 0.0, 0.0]))
+    both = solve(with_short_edges(load_panels(file, scale=1e-3), 600), RHO)
+    alone = solve(with_short_edges(one, 300), RHO)
+    np.testing.assert_allclose(both[:3, :3], 2.0 * alone[:3, :3], rtol=1e-3, atol=0.05)
 
 
 def test_flip_mends_normals_that_point_inwards(stl):

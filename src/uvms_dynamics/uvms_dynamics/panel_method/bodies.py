@@ -18,7 +18,7 @@ from uvms_dynamics.vehicle.frames import Pose
 PANELS = 3000
 """Panels of the finest surface, unless told otherwise: seconds, and a few parts in a thousand."""
 
-MOST_HALVED = 6000
+MOST_HALVED = 8000
 """A mesh file's panels are halved on for an estimate of the error up to this number."""
 
 SEA_WATER = 1025.0
@@ -29,13 +29,14 @@ SEA_WATER = 1025.0
 class Body:
     """Finenesses of one surface in the body frame, coarse to fine, and what is known beside.
 
-    `rows` holds matrices (6, 6) to compare with, by name.
+    `rows` holds matrices (6, 6) to compare with, by name; `is_mesh`: the panels are a user's.
     """
 
     name: str
     levels: tuple[Panels, ...]
     density: float
     rows: dict[str, Array]
+    is_mesh: bool = False
 
 
 def pose_of(about: Array, rpy_deg: Array) -> Pose:
@@ -74,7 +75,8 @@ def mesh_body(
     _check_count(count)
     panels = with_short_edges(load_panels(path, scale, flip), count // 4).in_frame(*pose)
     halved = 4 * panels.count <= max(count, MOST_HALVED)
-    return Body(str(path), (panels, panels.refined()) if halved else (panels,), density, {})
+    levels = (panels, panels.refined()) if halved else (panels,)
+    return Body(str(path), levels, density, {}, is_mesh=True)
 
 
 def vehicle_body(vehicle: Vehicle, name: str, count: int = PANELS) -> Body:

@@ -12,8 +12,8 @@ from uvms_dynamics.signals import Array
 NEGATIVE = 1e-3
 """A more negative eigenvalue, as a part of the largest, is no discretisation error."""
 
-NOTHING = 1e-6
-"""Terms below this part of the displaced water's count as zero."""
+NOTHING = 1e-3
+"""A change of terms below this part of the displaced water's inertia is of no interest."""
 
 
 @dataclass(frozen=True)
@@ -22,9 +22,9 @@ class AddedMassEstimate:
 
     `solved` holds (panels, matrix) of each fineness as computed; `change` (6,) is what the last
     step, to the extrapolated value, changes each diagonal term by, relative (None: one fineness
-    only; 0 for terms that vanish). `asymmetry` is the largest |A - A^T| of the finest, and
-    `clipped` the most negative eigenvalue that was set to zero, both as parts of the largest
-    entry with lengths in units of the cube root of the volume.
+    only; 0 for terms that are next to nothing). `asymmetry` is the largest |A - A^T| of the
+    finest, and `clipped` the most negative eigenvalue that was set to zero, both as parts of the
+    largest entry with lengths in units of the cube root of the volume.
     """
 
     matrix: Array

@@ -10,6 +10,9 @@ from uvms_dynamics.signals import Array
 Numbers = NDArray[np.int64]
 """Vertex numbers."""
 
+LONG = 3.0
+"""An edge is long from this multiple of that of as many equilateral triangles."""
+
 
 @dataclass(frozen=True)
 class Panels:
@@ -45,10 +48,15 @@ class Panels:
         corner = self.vertices[self.faces[:, 0]] - self.vertices.min(axis=0)
         return np.einsum("ij,ij->i", corner, self.area_vectors()) / 3.0
 
+    def triangles(self) -> Array:
+        """Corners (k', 3, 3) of the panels, quadrilaterals cut along a diagonal, m."""
+        quads = self.faces[self.faces[:, 2] != self.faces[:, 3]]
+        return self.vertices[np.concatenate([self.faces[:, :3], quads[:, [0, 2, 3]]])]
+
     def centroid(self) -> Array:
         """Middle of the enclosed volume (3,), m."""
         origin = self.vertices.min(axis=0)
-        corners = _as_triangles(self) - origin
+        corners = self.triangles() - origin
         volumes = np.linalg.det(corners) / 6.0
         return origin + volumes @ corners.sum(axis=1) / (4.0 * volumes.sum())
 
@@ -91,16 +99,18 @@ def _triangle_quarters(faces: Numbers, middle: Numbers) -> Numbers:
 
 
 def with_short_edges(panels: Panels, count: int) -> Panels:
-    """At least `count` panels, by halving the longest edges; the surface stays the same.
+    """At least `count` triangles, by halving the longest edges; the surface stays the same.
 
-    Long thin triangles, as CAD programs write them, become compact ones. A cut edge may meet an
-    uncut one, which collocation at the panels' middles does not mind.
+    Long thin triangles, as CAD programs write them, spoil the solution whatever their number:
+    where the panels have some, half as many again as there were may be spent on them. A cut edge
+    may meet an uncut one, which collocation at the panels' middles does not mind.
     """
-    if panels.count >= count:
-        return panels
-    corners = _as_triangles(panels)
-    while len(corners) < count:
-        lengths = np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+    corners = panels.triangles()
+    enough = max(count, 1.5 * len(corners))
+    while len(corners) < count or (
+        len(corners) < enough and longest_edge(corners) > LONG * mean_edge(corners)
+    ):
+        lengths = _edge_lengths(corners)
         longest = lengths.max(axis=1)
         cut = longest > 0.75 * longest.max()
         turn = (lengths[cut].argmax(axis=1)[:, None] + np.arange(3)) % 3
@@ -111,15 +121,24 @@ def with_short_edges(panels: Panels, count: int) -> Panels:
     return from_corners(corners)
 
 
+def longest_edge(corners: Array) -> float:
+    """Longest edge of the triangles (k, 3, 3), m."""
+    return float(_edge_lengths(corners).max())
+
+
+def mean_edge(corners: Array) -> float:
+    """Edge of as many equilateral triangles of the same area, m."""
+    a, b, c = np.moveaxis(corners, 1, 0)
+    area = np.linalg.norm(np.cross(b - a, c - a), axis=1).mean() / 2.0
+    return float(np.sqrt(4.0 / np.sqrt(3.0) * area))
+
+
+def _edge_lengths(corners: Array) -> Array:
+    return np.linalg.norm(np.roll(corners, -1, axis=1) - corners, axis=2)
+
+
 def from_corners(corners: Array) -> Panels:
     """Panels of triangles that are given by their corners (k, 3, 3); equal points are joined."""
     vertices, number = np.unique(corners.reshape(-1, 3), axis=0, return_inverse=True)
     triangles = number.reshape(-1, 3)
     return Panels(vertices, triangles[:, [0, 1, 2, 2]])
-
-
-def _as_triangles(panels: Panels) -> Array:
-    """Corners (k, 3, 3) of the panels, quadrilaterals cut along a diagonal."""
-    quads = panels.faces[panels.faces[:, 2] != panels.faces[:, 3]]
-    faces = np.concatenate([panels.faces[:, :3], quads[:, [0, 2, 3]]])
-    return panels.vertices[faces]
