@@ -78,8 +78,9 @@ class FreeRun:
             total += 0.5 * joint.stop_stiffness_nm_rad * depth**2
         return total
 
-    def power(self, x):
-        """Of drives and thrusters on the system, W."""
-        thrust = x[JOINTS + 2 * self.n :]
-        push = np.concatenate([thruster_matrix(self.vehicle) @ thrust, self.effort])
-        return push @ self.velocity(x)
+    def power(self, states):
+        """Of drives and thrusters on the system (k,), W, in states (k, nx)."""
+        n = self.n
+        wrench = states[:, JOINTS + 2 * n :] @ thruster_matrix(self.vehicle).T
+        of_thrusters = (wrench * states[:, VELOCITY:JOINTS]).sum(axis=1)
+        return of_thrusters + states[:, JOINTS + n : JOINTS + 2 * n] @ self.effort
