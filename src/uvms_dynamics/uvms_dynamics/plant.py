@@ -93,7 +93,7 @@ class Plant:
         """
         thrust = _checked(thruster.thrust, self._vehicle.thruster_names, "thruster_command", "N")
         effort = _checked(joints.effort, self._vehicle.joint_names, "joint_command", "N m")
-        limit = self._system.model.joints[1:, EFFORT]
+        limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
         self._effort = np.clip(effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
         self._integrate(thrust, self._states, self._rates)

@@ -2,23 +2,35 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.hull import damping
+from uvms_dynamics.kernels.forward import set_hull
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import ACCELERATION, DOWN, FORCE, HULL, ROTOR, VELOCITY
+from uvms_dynamics.kernels.layout import (
+    ACCELERATION,
+    DOWN,
+    FORCE,
+    HULL,
+    INERTIA,
+    LINEAR_PART,
+    RATE,
+    ROTOR,
+)
 from uvms_dynamics.kernels.motion import (
-    bias_force,
     carry_down,
     carry_velocity,
     down_in_body,
+    hull_bias_force,
+    link_bias_force,
     make_workspace,
-    resist,
+    set_angle,
+    to_body,
+    to_hull,
 )
 from uvms_dynamics.kernels.spatial import (
     add,
     force_to_parent,
     load,
+    load3,
     motion_to_child,
-    set_rotation,
     store,
     store3,
     times,
@@ -34,18 +46,15 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     the derivative of its components; quat (4,); q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
     """
     n = q.shape[0]
-    work = make_workspace(n)
-    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    store3(work, HULL, DOWN, k0, k1, k2)
-    forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
-    bias_force(model.bodies, work, HULL)
-    _inertia_force(model.bodies, work, HULL)
-    _carry_inward(model.joints, work, n)
-    out = np.empty(6 + n)
+    work, out = make_workspace(n), np.empty(6 + n)
+    _set_motion(model, work, down_in_body(quat[0], quat[1], quat[2], quat[3]), nu_r, nu_r_dot)
+    _forces_of_links(model, work, q, q_dot, q_ddot)
+    store(work, HULL, FORCE, *hull_bias_force(model, work))
+    _add_inertia_force(model, work, HULL)
+    _carry_inward(model, work, n)
+    _store_wrench(model, work, 1.0, out)
     for i in range(1, n + 1):
-        out[5 + i] = work[i, FORCE + 5] + model.joints[i, ROTOR] * q_ddot[i - 1]
-    for k in range(6):
-        out[k] = work[0, FORCE + k] + damping(model.hull, k, nu_r[k])
+        out[5 + i] = work[i, FORCE + 5] + model[i, ROTOR] * q_ddot[i - 1]
     return out
 
 
@@ -58,49 +67,58 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     `inverse_dynamics`; body frame.
     """
     n = q.shape[0]
-    work = make_workspace(n)
-    store3(work, HULL, DOWN, 0.0, 0.0, 0.0)  # no down, no weight
-    forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
+    work, out = make_workspace(n), np.empty(6)
+    _set_motion(model, work, (0.0, 0.0, 0.0), nu_r, nu_r_dot)  # no down, no weight
+    _forces_of_links(model, work, q, q_dot, q_ddot)
     store(work, HULL, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    _carry_inward(model.joints, work, n)
-    out = np.empty(6)
-    for k in range(6):
-        out[k] = -work[0, FORCE + k]
+    _carry_inward(model, work, n)
+    _store_wrench(model, work, -1.0, out)
     return out
 
 
 @inner
-def forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work):
+def _set_motion(model, work, down, nu_r, nu_r_dot):
+    """Down direction, velocity and acceleration of the hull."""
+    set_hull(model, work, down, nu_r, LINEAR_PART)
+    store3(work, HULL, ACCELERATION, *to_hull(model, nu_r_dot[0], nu_r_dot[1], nu_r_dot[2]))
+    store3(work, HULL, ACCELERATION + 3, *to_hull(model, nu_r_dot[3], nu_r_dot[4], nu_r_dot[5]))
+
+
+@inner
+def _forces_of_links(model, work, q, q_dot, q_ddot):
     """Motion of each link and the force that it needs for it, I a + C v - drag - weight."""
-    bodies, joints = model.bodies, model.joints
-    for k in range(6):
-        work[0, VELOCITY + k] = nu_r[k]
-        work[0, ACCELERATION + k] = nu_r_dot[k]
     for i in range(1, q.shape[0] + 1):
-        set_rotation(joints, work, i, q[i - 1])
-        carry_down(work, i)
-        x0, x1, y0, y1 = carry_velocity(joints, work, i, q_dot[i - 1])
+        set_angle(model, work, i, q[i - 1])
+        work[i, RATE] = q_dot[i - 1]
+        x0, x1, y0, y1 = carry_velocity(model, work, i)
         a0, a1, a2, b0, b1, b2 = load(work, i - 1, ACCELERATION)
-        a0, a1, a2, b0, b1, b2 = motion_to_child(joints, work, i, a0, a1, a2, b0, b1, b2)
+        a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a0, a1, a2, b0, b1, b2)
         b2 += q_ddot[i - 1]
         store(work, i, ACCELERATION, a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2)
-        bias_force(bodies, work, i)
-        _inertia_force(bodies, work, i)
-        resist(model.strips, model.strip_start, model.drag_coefficient, work, i)
+        carry_down(model, work, i)
+        store(work, i, FORCE, *link_bias_force(model, work, i))
+        _add_inertia_force(model, work, i)
 
 
 @inner
-def _inertia_force(bodies, work, i):
+def _add_inertia_force(model, work, i):
     """Add I a of body i to its force."""
     a0, a1, a2, b0, b1, b2 = load(work, i, ACCELERATION)
-    f0, f1, f2, n0, n1, n2 = times(bodies, i, a0, a1, a2, b0, b1, b2)
-    add(work, i, FORCE, f0, f1, f2, n0, n1, n2)
+    add(work, i, FORCE, *times(model, i, INERTIA, a0, a1, a2, b0, b1, b2))
 
 
 @inner
-def _carry_inward(joints, work, n):
+def _carry_inward(model, work, n):
     """Sum the forces from the tip to the hull, eq. (14)-(15); row i: through joint i."""
     for i in range(n, 0, -1):
         f0, f1, f2, n0, n1, n2 = load(work, i, FORCE)
-        f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2)
-        add(work, i - 1, FORCE, f0, f1, f2, n0, n1, n2)
+        add(work, i - 1, FORCE, *force_to_parent(model, work, i, f0, f1, f2, n0, n1, n2))
+
+
+@inner
+def _store_wrench(model, work, sign, out):
+    """Force on the hull, in body axes, times a sign."""
+    f0, f1, f2 = to_body(model, *load3(work, HULL, FORCE))
+    n0, n1, n2 = to_body(model, *load3(work, HULL, FORCE + 3))
+    out[0], out[1], out[2] = sign * f0, sign * f1, sign * f2
+    out[3], out[4], out[5] = sign * n0, sign * n1, sign * n2
