@@ -28,8 +28,8 @@ class Target:
 class Figure:
     """One line of the output.
 
-    For speed the ratio says how many times faster than the reference we are (more is better); for
-    errors and disturbances it is our value over the reference's (less is better).
+    The ratio is our value over the reference's in the same unit: for times, errors and disturbances
+    less is better, for rates more.
     """
 
     name: str

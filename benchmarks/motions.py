@@ -1,4 +1,4 @@
-"""Inputs that several benchmarks share: the reference vehicle, dry or wet, and random motions."""
+"""Inputs that several benchmarks share: the reference vehicle without water, and random motions."""
 
 from typing import NamedTuple
 
@@ -49,3 +49,13 @@ def motions(n: int, count: int = COUNT, seed: int = 1) -> list[Motion]:
         tau = rng.normal(scale=20.0, size=6 + n)
         made.append(Motion(quat / np.linalg.norm(quat), nu, nu_dot, *joints, tau))
     return made
+
+
+def calm_motion(n: int, seed: int = 1) -> Motion:
+    """A slow motion near level, from which a simulation of any arm can go on for long."""
+    rng = np.random.default_rng(seed)
+    quat = np.concatenate([rng.normal(scale=0.05, size=3), [1.0]])
+    nu, nu_dot = 0.1 * rng.normal(size=(2, 6))
+    joints = rng.uniform(-1.0, 1.0, (3, n)) * np.array([[0.5], [0.1], [0.1]])
+    tau = rng.uniform(-0.2, 0.2, 6 + n)
+    return Motion(quat / np.linalg.norm(quat), nu, nu_dot, *joints, tau)

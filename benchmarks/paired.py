@@ -20,10 +20,13 @@ Work = Callable[[], object]
 
 @dataclass(frozen=True)
 class Timing:
-    """Least time of a call of ours in s, and the speed-up against each reference by name."""
+    """Least time of a call of ours in s, and its ratio to each reference's by name.
+
+    A ratio below 1 says that we are faster; that of rates, such as steps a second, is its inverse.
+    """
 
     seconds: float
-    speedup: dict[str, float]
+    ratio: dict[str, float]
 
 
 def paired(ours: Work, references: Mapping[str, Work], rounds: int = ROUNDS) -> Timing:
@@ -45,11 +48,11 @@ def paired(ours: Work, references: Mapping[str, Work], rounds: int = ROUNDS) -> 
             order.reverse()
     finally:
         gc.enable()
-    speedup = {
-        name: statistics.median(b / a for a, b in zip(times[""], times[name], strict=True))
+    ratio = {
+        name: statistics.median(a / b for a, b in zip(times[""], times[name], strict=True))
         for name in references
     }
-    return Timing(min(times[""]), speedup)
+    return Timing(min(times[""]), ratio)
 
 
 def seconds_per_call(work: Work, count: int) -> float:

@@ -1,11 +1,39 @@
 """The dry vehicle in Pinocchio, the reference for rigid dynamics."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pinocchio as pin
+from motions import Motion
 
 from uvms_dynamics import Vehicle
 from uvms_dynamics.model import distal_pose
+from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle.frames import mounting_pose
+
+ABA = "pinocchio.aba called from Python, rigid bodies alone"
+
+
+class Aba:
+    """Pinocchio's articulated bodies for each of some motions, called from Python."""
+
+    def __init__(self, vehicle: Vehicle, motions: Sequence[Motion]) -> None:
+        self.model = pinocchio_model(vehicle)
+        self.data = self.model.createData()
+        self.arguments = [
+            (np.concatenate([np.zeros(3), m.quat, m.q]), np.concatenate([m.nu, m.q_dot]), m.tau)
+            for m in motions
+        ]
+
+    def __call__(self) -> None:
+        """All motions once."""
+        model, data = self.model, self.data
+        for q, v, tau in self.arguments:
+            pin.aba(model, data, q, v, tau)
+
+    def results(self) -> Array:
+        """Accelerations (k, 6+n) of all motions."""
+        return np.array([pin.aba(self.model, self.data, *a) for a in self.arguments])
 
 
 def pinocchio_model(vehicle: Vehicle) -> pin.Model:

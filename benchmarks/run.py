@@ -1,9 +1,9 @@
 """Measure speed and quality of UVMS: one JSON object a line on standard output.
 
 Keys: name, value, unit, reference (what it is compared with, in words), ratio, target, met.
-For speed, `ratio` says how many times faster than the reference we are; both take turns in one
-process. For errors and disturbances it is our value over the reference's. A missed target is said
-by `"met": false`; the exit code is 0 all the same, so that a measurement is never lost.
+`ratio` is our value over the reference's, in the same unit: of times and errors less is better, of
+rates more. For speed both take turns in one process. A missed target is said by `"met": false`; the
+exit code is 0 all the same, so that a measurement is never lost.
 """
 
 import argparse

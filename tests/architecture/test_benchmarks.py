@@ -3,9 +3,13 @@
 import json
 import subprocess
 import sys
+from importlib import import_module
 
+import numpy as np
 import pytest
 from project import ROOT
+
+from uvms_dynamics import build_model, forward_dynamics, mass_matrix
 
 PROGRAM = ROOT / "benchmarks" / "run.py"
 KEYS = ["name", "value", "unit", "reference", "ratio", "target", "met"]
@@ -22,11 +26,18 @@ def bench(*arguments):
 
 
 @pytest.fixture
-def figures(monkeypatch):
-    """The module of that name, which is no package."""
+def module(monkeypatch):
+    """Imports a module of the benchmarks, which are no package; all are forgotten afterwards."""
     monkeypatch.syspath_prepend(str(PROGRAM.parent))
-    yield __import__("figures")
-    sys.modules.pop("figures", None)
+    yield import_module
+    own = {path.stem for path in PROGRAM.parent.glob("*.py")} | {"cases"}
+    for name in [name for name in sys.modules if name.split(".")[0] in own]:
+        del sys.modules[name]
+
+
+@pytest.fixture
+def figures(module):
+    return module("figures")
 
 
 def test_list_tells_what_every_file_measures():
@@ -44,8 +55,9 @@ def test_unknown_names_are_refused_with_the_choices():
     assert "unknown: speed; choose from allocation, arm_swing" in done.stderr
 
 
-def test_every_line_is_one_object_with_the_agreed_keys():
-    done = bench("plant")
+@pytest.mark.parametrize("name", ["plant", "chain_mujoco"])
+def test_every_line_is_one_object_with_the_agreed_keys(name):
+    done = bench(name)
     assert done.returncode == 0, done.stderr
     found = [json.loads(line) for line in done.stdout.splitlines()]
     assert found
@@ -67,3 +79,70 @@ def test_targets_are_judged_by_the_field_that_they_name(figures, field, sign, bo
 def test_what_was_not_measured_meets_no_target(figures):
     line = figures.Figure("a", 5.0, "us", target=figures.Target("ratio", ">=", 0.0)).line()
     assert json.loads(line)["met"] is False
+
+
+def test_a_ratio_is_our_time_over_theirs(module, monkeypatch):
+    paired, now = module("paired"), [0.0]
+    monkeypatch.setattr(paired.time, "perf_counter", lambda: now[0])
+
+    def takes(seconds):
+        def work():
+            now[0] += seconds
+
+        return work
+
+    timing = paired.paired(takes(0.001), {"slow": takes(0.004), "quick": takes(0.0005)}, rounds=3)
+    assert timing.seconds == pytest.approx(0.001)
+    assert timing.ratio == pytest.approx({"slow": 0.25, "quick": 2.0})
+
+
+@pytest.mark.parametrize("n", [1, 4, 8, 16, 32])
+def test_all_engines_have_the_same_rigid_chain(module, n):
+    """MuJoCo from our MJCF, Pinocchio, and our kernel without water, in random motion."""
+    chains, mujoco_chain = module("chains"), module("mujoco_chain")
+    vehicle, motions = chains.chain(n), module("motions").motions(n, count=4, seed=n)
+    expected = module("rigid").Aba(vehicle, motions).results()
+    theirs = mujoco_chain.mujoco_model(vehicle, 0.005, water=False)
+    ours = build_model(chains.without_water(vehicle))
+    for m, wanted in zip(motions, expected, strict=True):
+        arguments = (m.quat, m.nu, m.q, m.q_dot, m.tau)
+        limits = {"rtol": 1e-8, "atol": 1e-8 * np.abs(wanted).max()}
+        found = mujoco_chain.mujoco_acceleration(theirs, *arguments)
+        np.testing.assert_allclose(found, wanted, **limits)
+        np.testing.assert_allclose(forward_dynamics(ours, *arguments), wanted, **limits)
+
+
+@pytest.mark.parametrize("fluid", ["inertia_box", "ellipsoid"])
+def test_the_water_of_mujoco_resists_every_motion(module, fluid):
+    chains, mujoco_chain = module("chains"), module("mujoco_chain")
+    vehicle, motions = chains.chain(4), module("motions").motions(4, count=4)
+    wet, dry = (
+        mujoco_chain.mujoco_model(vehicle, 0.005, water=water, fluid=fluid)
+        for water in (True, False)
+    )
+    mass = mass_matrix(build_model(chains.without_water(vehicle)), motions[0].q)
+    for m in motions:
+        arguments = (m.quat, m.nu, motions[0].q, m.q_dot, m.tau)
+        added = mujoco_chain.mujoco_acceleration(wet, *arguments)
+        added -= mujoco_chain.mujoco_acceleration(dry, *arguments)
+        assert np.concatenate([m.nu, m.q_dot]) @ mass @ added < -0.1
+
+
+def test_chains_feel_all_of_the_water(module):
+    for n in (4, 32):
+        vehicle = module("chains").chain(n)
+        for body in (vehicle.hull, *vehicle.arm.links):
+            matrix = np.array(body.added_mass)
+            assert np.all(matrix != 0.0)
+            assert np.linalg.eigvalsh(matrix)[0] > 0.0
+        assert len(build_model(vehicle).strips) == 3 * n
+
+
+def test_simulated_chains_stay_calm_and_do_not_depend_on_the_step(module):
+    """What is timed is a plain swimming motion, resolved by its step, not one that blows up."""
+    compiled, chains = module("compiled"), module("chains")
+    motion = module("motions").calm_motion(16)
+    state = compiled.stepping(chains.chain(16), motion)().copy()
+    fine = compiled.stepping(chains.chain(16), motion, halvings=1)().copy()
+    assert np.max(np.abs(state)) < 2.0
+    np.testing.assert_allclose(state, fine, atol=1e-6)

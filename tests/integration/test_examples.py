@@ -6,6 +6,7 @@ import sys
 from functools import cache
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 FOLDER = Path(__file__).resolve().parents[2] / "examples"
@@ -58,6 +59,15 @@ def test_free_vehicle_heels_over_and_comes_to_rest(said):
     assert 10.0 < roll < 30.0
     assert energy < 0.1 * max(row[4] for row in rows)
     assert abs(moment) < 0.02
+
+
+def test_own_chain_inverts_its_own_dynamics(said):
+    vehicle, joints, needed, masses = map(numbers, said(FOLDER / "dynamics_own_chain.py"))
+    assert np.abs(vehicle + joints).max() > 1.0
+    np.testing.assert_allclose(needed, [0.0] * 6 + [3.0, 1.0], atol=1e-3)
+    water = 1025.0 * np.pi / 6.0 * 1.2 * 0.4**2  # displaced by the hull, kg
+    assert water < masses[0] < masses[1] < 2.5 * water
+    assert len(masses) == 8
 
 
 def test_genetic_plan_disturbs_less_than_the_arm_alone(said):

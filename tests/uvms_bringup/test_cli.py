@@ -164,8 +164,8 @@ def test_an_unstable_step_names_its_parameter(capsys):
     settings = ["plant.step_s=0.05", "plant.control_period_s=1", "planner.step_s=1", *slow]
     options = [word for setting in settings for word in ("--set", setting)]
     text = error_of(capsys, "simulate", "hover", *options)
-    assert text.startswith("plant.step_s: 0.05 s is unstable with the friction of arm.joints.0")
-    assert text.endswith("allowed: at most 0.0181 s")
+    assert text.startswith("plant.step_s: 0.05 s is unstable with the stop_dissipation_s_rad of")
+    assert text.endswith("allowed: at most 0.0118 s")
 
 
 @pytest.mark.parametrize("command", ["run", "simulate"])

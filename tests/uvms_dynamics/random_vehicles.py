@@ -25,6 +25,11 @@ def random_motion(rng: np.random.Generator, n: int) -> Motion:
     return Motion(quat / np.linalg.norm(quat), *vectors)
 
 
+def norm_error(found: np.ndarray, expected: np.ndarray) -> float:
+    """|found - expected| / |expected|, in the 2-norm over all components."""
+    return float(np.linalg.norm(found - expected) / np.linalg.norm(expected))
+
+
 def random_vehicle(seed: int, n: int, **changes) -> Vehicle:
     """A vehicle of n joints whose every body has a full added mass; `changes` as in `changed`."""
     rng = np.random.default_rng(seed)

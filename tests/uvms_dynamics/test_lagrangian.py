@@ -1,92 +1,97 @@
-"""Rigid and added mass with all their Coriolis terms, from the kinetic energy alone.
+"""The kernels against an assembly of their own from energies and strips: no line in common."""
 
-The mass matrix is summed from the bodies' Jacobians, and the equations of motion are those of Euler
-and Poincare (vehicle) and of Lagrange (joints), with the slopes of M(q) by finite differences: no
-line of the recursion is used.
-"""
-
+import independent_dynamics as independent
 import numpy as np
 import pytest
-from random_vehicles import random_motion, random_vehicle
+from random_vehicles import norm_error, random_motion, random_vehicle
 
-from uvms_dynamics import build_model, inverse_dynamics, mass_matrix, restoring_wrench
-from uvms_dynamics.rotations import skew
-from uvms_dynamics.vehicle.frames import arm_frames
-from uvms_dynamics.vehicle.shapes import move_to_origin
+from uvms_dynamics import (
+    build_model,
+    forward_dynamics,
+    inverse_dynamics,
+    mass_matrix,
+    quat_to_matrix,
+    restoring_wrench,
+)
+
+SIZES = [1, 2, 4, 8, 16, 32]
 
 
-def body_inertia(body):
-    """Rigid and added mass (6, 6) about the body frame's origin."""
-    rigid = move_to_origin(
-        body.mass_kg * np.eye(3), np.array(body.inertia_kg_m2), np.array(body.cg_m)
+@pytest.fixture(params=SIZES, ids=lambda n: f"{n} joints")
+def wet(request):
+    n = request.param
+    return random_vehicle(300 + n, n), random_motion(np.random.default_rng(n), n)
+
+
+def expected_force(vehicle, motion):
+    return independent.inverse_dynamics(vehicle, quat_to_matrix(motion.quat), *motion[1:])
+
+
+def test_the_assemblys_jacobian_is_the_slope_of_its_poses():
+    """Omega = R^T R_dot and v = R^T p_dot of the last link under joint rates."""
+    vehicle, motion = random_vehicle(1, 5), random_motion(np.random.default_rng(1), 5)
+    poses = independent.link_poses(vehicle.arm, motion.q)
+    rate = independent.slope(
+        lambda q: independent.link_poses(vehicle.arm, q), motion.q, motion.q_dot
     )
-    return rigid + np.array(body.added_mass)
+    turned = poses[-1, :3, :3].T @ rate[-1, :3, :3]
+    along = poses[-1, :3, :3].T @ rate[-1, :3, 3]
+    twist = independent.link_jacobian(poses, 4)[:, 6:] @ motion.q_dot
+    expected = [*along, turned[2, 1], turned[0, 2], turned[1, 0]]
+    np.testing.assert_allclose(twist, expected, rtol=1e-12, atol=1e-13)
 
 
-def link_jacobian(frames, i):
-    """Twist (6,) of link i in its own frame, from (nu, q_dot)."""
-    origin, rotation = frames[i + 1]
-    jacobian = np.zeros((6, 6 + len(frames) - 1))
-    jacobian[:3, :3] = np.eye(3)
-    jacobian[:3, 3:6] = -skew(origin)
-    jacobian[3:, 3:6] = np.eye(3)
-    for j in range(i + 1):
-        axis = frames[j][1][:, 2]
-        jacobian[:3, 6 + j] = np.cross(axis, origin - frames[j][0])
-        jacobian[3:, 6 + j] = axis
-    return np.kron(np.eye(2), rotation.T) @ jacobian
+def test_mass_matrix_is_the_sum_over_the_bodies(wet):
+    vehicle, motion = wet
+    found = mass_matrix(build_model(vehicle), motion.q)
+    assert norm_error(found, independent.mass_matrix(vehicle, motion.q)) < 1e-11
 
 
-def summed_mass_matrix(vehicle, q):
-    """sum J^T M J over the bodies, and the rotors."""
+def test_weight_and_buoyancy_are_the_slope_of_the_potential_energy(wet):
+    vehicle, motion = wet
+    model, still = build_model(vehicle), np.zeros(vehicle.n_joints)
+    rest = inverse_dynamics(model, motion.quat, np.zeros(6), np.zeros(6), motion.q, still, still)
+    rotation = quat_to_matrix(motion.quat)
+    expected = independent.restoring_force(vehicle, rotation, motion.q)
+    assert norm_error(-rest, expected) < 1e-11
+    assert norm_error(restoring_wrench(model, motion.quat, motion.q), expected[:6]) < 1e-11
+
+
+def test_drag_is_the_sum_over_the_strips(wet):
+    vehicle, motion = wet
+    smooth = build_model(random_vehicle(300 + vehicle.n_joints, vehicle.n_joints, drag=False))
+    found = inverse_dynamics(smooth, *motion) - inverse_dynamics(build_model(vehicle), *motion)
+    expected = independent.drag_force(vehicle, motion.nu, motion.q, motion.q_dot)
+    assert norm_error(found, expected) < 1e-10
+
+
+def test_inverse_dynamics_with_all_of_the_water(wet):
+    vehicle, motion = wet
+    found = inverse_dynamics(build_model(vehicle), *motion)
+    assert norm_error(found, expected_force(vehicle, motion)) < 1e-10
+
+
+def test_forward_dynamics_with_all_of_the_water(wet):
+    vehicle, motion = wet
     n = vehicle.n_joints
-    matrix = np.zeros((6 + n, 6 + n))
-    matrix[:6, :6] = body_inertia(vehicle.hull)
-    matrix[6:, 6:] = np.diag([joint.rotor_inertia_kg_m2 for joint in vehicle.arm.joints])
-    frames = arm_frames(vehicle.arm, q)
-    for i, link in enumerate(vehicle.arm.links):
-        jacobian = link_jacobian(frames, i)
-        matrix += jacobian.T @ body_inertia(link) @ jacobian
-    return matrix
-
-
-def slopes(vehicle, q, h=1e-4):
-    """dM/dq (n, 6+n, 6+n), fourth order."""
-    result = []
-    for unit in h * np.eye(len(q)):
-        m = [summed_mass_matrix(vehicle, q + k * unit) for k in (-2, -1, 1, 2)]
-        result.append((m[0] - 8.0 * m[1] + 8.0 * m[2] - m[3]) / (12.0 * h))
-    return np.array(result)
-
-
-@pytest.mark.parametrize(("seed", "n"), [(1, 1), (2, 2), (3, 4), (4, 7)])
-def test_mass_matrix_is_the_sum_over_the_bodies(seed, n):
-    vehicle = random_vehicle(seed, n)
-    q = np.random.default_rng(seed).uniform(-3.0, 3.0, n)
-    found = mass_matrix(build_model(vehicle), q)
-    np.testing.assert_allclose(found, summed_mass_matrix(vehicle, q), rtol=1e-11, atol=1e-11)
-
-
-@pytest.mark.parametrize(("seed", "n"), [(1, 1), (2, 2), (3, 4), (4, 7)])
-def test_coriolis_terms_follow_from_the_kinetic_energy(seed, n):
-    vehicle = random_vehicle(seed, n, drag=False)
-    model = build_model(vehicle)
-    motion = random_motion(np.random.default_rng(seed), n)
-    velocity = np.concatenate([motion.nu, motion.q_dot])
-    acceleration = np.concatenate([motion.nu_dot, motion.q_ddot])
-
-    matrix, slope = summed_mass_matrix(vehicle, motion.q), slopes(vehicle, motion.q)
-    momentum = matrix @ velocity
-    expected = matrix @ acceleration + np.tensordot(motion.q_dot, slope, 1) @ velocity
-    expected[6:] -= 0.5 * np.einsum("i,kij,j->k", velocity, slope, velocity)
-    v, w = motion.nu[:3], motion.nu[3:]
-    expected[:3] += np.cross(w, momentum[:3])
-    expected[3:6] += np.cross(w, momentum[3:6]) + np.cross(v, momentum[:3])
-
-    still = np.zeros(n)
-    weight = inverse_dynamics(model, motion.quat, np.zeros(6), np.zeros(6), motion.q, still, still)
-    np.testing.assert_allclose(
-        weight[:6], -restoring_wrench(model, motion.quat, motion.q), rtol=1e-12, atol=1e-9
+    tau = np.random.default_rng(n).uniform(-20.0, 20.0, 6 + n)
+    rest = motion._replace(nu_dot=np.zeros(6), q_ddot=np.zeros(n))
+    matrix = independent.mass_matrix(vehicle, motion.q)
+    expected = np.linalg.solve(matrix, tau - expected_force(vehicle, rest))
+    found = forward_dynamics(
+        build_model(vehicle), motion.quat, motion.nu, motion.q, motion.q_dot, tau
     )
-    found = inverse_dynamics(model, *motion) - weight
-    np.testing.assert_allclose(found, expected, rtol=1e-7, atol=1e-7 * np.abs(expected).max())
+    assert norm_error(found, expected) < 1e-10
+
+
+def test_inverse_undoes_forward_dynamics_and_forward_inverse(wet):
+    vehicle, motion = wet
+    model, state = build_model(vehicle), (motion.q, motion.q_dot)
+    tau = np.random.default_rng(7).uniform(-20.0, 20.0, 6 + vehicle.n_joints)
+    found = forward_dynamics(model, motion.quat, motion.nu, *state, tau)
+    again = inverse_dynamics(model, motion.quat, motion.nu, found[:6], *state, found[6:])
+    assert norm_error(again, tau) < 1e-10
+
+    force = inverse_dynamics(model, *motion)
+    found = forward_dynamics(model, motion.quat, motion.nu, *state, force)
+    assert norm_error(found, np.concatenate([motion.nu_dot, motion.q_ddot])) < 1e-10

@@ -1,15 +1,23 @@
-"""Rigid dynamics without water against Pinocchio, an independent engine."""
+"""Rigid dynamics without water against Pinocchio, an independent engine.
+
+The arms are random but of human size: links of some 0.4 m and 1-5 kg, rotors of 0.01-0.2 kg m^2,
+joint rates up to 2 rad/s. At 32 joints their mass matrices have condition numbers of some 1e4, so
+the bounds hold without any allowance for it.
+"""
+
+from itertools import product
 
 import numpy as np
 import pinocchio as pin
 import pytest
-from random_vehicles import random_motion, random_vehicle
+from random_vehicles import norm_error, random_motion, random_vehicle
 
 from uvms_dynamics import build_model, end_effector, forward_dynamics, inverse_dynamics, mass_matrix
 from uvms_dynamics.model import distal_pose
 from uvms_dynamics.vehicle.frames import mounting_pose
 
-CASES = [(11, 1), (12, 3), (13, 4), (14, 7)]
+SIZES = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32]
+SEEDS = [11, 12, 13]
 
 
 def pinocchio_model(vehicle):
@@ -38,9 +46,9 @@ def se3(pose):
     return pin.SE3(pose[1], np.array(pose[0]))
 
 
-@pytest.fixture(params=CASES, ids=lambda case: f"{case[1]} joints")
+@pytest.fixture(params=product(SIZES, SEEDS), ids=lambda case: "{} joints, {}".format(*case))
 def dry(request):
-    seed, n = request.param
+    n, seed = request.param
     vehicle = random_vehicle(seed, n, water=False)
     motion = random_motion(np.random.default_rng(seed), n)
     model = pinocchio_model(vehicle)
@@ -53,8 +61,7 @@ def test_inverse_dynamics(dry):
     velocity = np.concatenate([motion.nu, motion.q_dot])
     acceleration = np.concatenate([motion.nu_dot, motion.q_ddot])
     expected = pin.rnea(model, data, q, velocity, acceleration)
-    found = inverse_dynamics(ours, *motion)
-    np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
+    assert norm_error(inverse_dynamics(ours, *motion), expected) < 1e-10
 
 
 def test_forward_dynamics(dry):
@@ -62,14 +69,14 @@ def test_forward_dynamics(dry):
     tau = np.linspace(-20.0, 20.0, model.nv)
     expected = pin.aba(model, data, q, np.concatenate([motion.nu, motion.q_dot]), tau)
     found = forward_dynamics(ours, motion.quat, motion.nu, motion.q, motion.q_dot, tau)
-    np.testing.assert_allclose(found, expected, rtol=1e-10, atol=1e-10 * np.abs(expected).max())
+    assert norm_error(found, expected) < 1e-10
 
 
 def test_mass_matrix(dry):
     ours, motion, model, data, q = dry
     upper = np.triu(pin.crba(model, data, q))
     expected = upper + np.triu(upper, 1).T
-    np.testing.assert_allclose(mass_matrix(ours, motion.q), expected, rtol=1e-10, atol=1e-10)
+    assert norm_error(mass_matrix(ours, motion.q), expected) < 1e-10
 
 
 def test_tool_pose(dry):

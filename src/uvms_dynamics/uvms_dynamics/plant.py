@@ -2,20 +2,18 @@
 
 import numpy as np
 
-from uvms_dynamics.errors import PlantDiverged, SignalError
+from uvms_dynamics.divergence import check_finite
+from uvms_dynamics.errors import SignalError
 from uvms_dynamics.integrator import (
     JOINTS,
-    QUATERNION,
-    VELOCITY,
     System,
     advance,
     make_scratch,
 )
 from uvms_dynamics.kernels.layout import EFFORT
 from uvms_dynamics.model import build_model
-from uvms_dynamics.plant_config import PlantConfig, check_step, initial_joints, steps_in
+from uvms_dynamics.plant_config import PlantConfig, initial_state, steps_in
 from uvms_dynamics.plant_truth import PlantTruth, true_disturbance, true_joints, true_odometry
-from uvms_dynamics.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.sensors import SensorFrame, SensorSuite
 from uvms_dynamics.sensors.mounting import Trajectory
 from uvms_dynamics.signals import (
@@ -25,6 +23,7 @@ from uvms_dynamics.signals import (
     to_nanoseconds,
     to_seconds,
 )
+from uvms_dynamics.stability import check_step
 from uvms_dynamics.thrusters import build_thrusters
 from uvms_dynamics.vehicle import Vehicle
 
@@ -48,7 +47,7 @@ class Plant:
         current = np.array(config.current_ned_m_s, dtype=float)
         self._system = System(build_model(vehicle), build_thrusters(vehicle), current)
         self._scratch = make_scratch(vehicle.n_joints, vehicle.n_thrusters)
-        self._state = _initial_state(vehicle, config)
+        self._state = initial_state(vehicle, config)
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)
         self._effort = np.zeros(vehicle.n_joints)
@@ -107,38 +106,16 @@ class Plant:
         self._frame = self._sample((0,), self._states[:1], self._rates[:1])
 
     def _integrate(self, thrust: Array, states: Array, rates: Array) -> None:
-        """As many steps as the tables have rows after the first."""
+        """As many steps as the tables have rows after the first; the last is at the stamp."""
         step = to_seconds(self._step)
         advance(self._system, self._state, thrust, self._effort, step, self._scratch, states, rates)
         self._rate = rates[-1].copy()
-        self._check_finite()
+        check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)
 
     def _sample(self, stamps: tuple[int, ...], states: Array, rates: Array) -> SensorFrame:
         trajectory = Trajectory(stamps, states, rates, self._system.current)
         joints = true_joints(self._stamp, self._state, self._effort)
         return self._sensors.sample(trajectory, joints.position, joints.velocity, joints.effort)
-
-    def _check_finite(self) -> None:
-        if np.isfinite(self._state).all() and np.isfinite(self._rate).all():
-            return
-        text = np.array2string(self._state, precision=3, max_line_width=100)
-        raise PlantDiverged(
-            f"the plant diverged before t = {to_seconds(self._stamp):.3f} s with step_s ="
-            f" {self._config.step_s:g} s; state (position, quaternion, velocity, joints, joint"
-            f" rates, thrust): {text}"
-        )
-
-
-def _initial_state(vehicle: Vehicle, config: PlantConfig) -> Array:
-    """State of the integrator at t = 0: joints at rest, no thrust."""
-    state = np.zeros(JOINTS + 2 * vehicle.n_joints + vehicle.n_thrusters)
-    quaternion = rpy_to_quat(*np.radians(config.initial_rpy_deg))
-    state[:QUATERNION] = config.initial_position_m
-    state[QUATERNION:VELOCITY] = quaternion
-    state[VELOCITY:JOINTS] = config.initial_velocity
-    state[VELOCITY : VELOCITY + 3] -= quat_to_matrix(quaternion).T @ config.current_ned_m_s
-    state[JOINTS : JOINTS + vehicle.n_joints] = initial_joints(vehicle, config)
-    return state
 
 
 def _checked(values: Array, names: tuple[str, ...], topic: str, unit: str) -> Array:

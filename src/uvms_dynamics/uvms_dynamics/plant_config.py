@@ -5,12 +5,10 @@ from pydantic import Field
 
 from uvms_dynamics.config import Config
 from uvms_dynamics.errors import ConfigError
+from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.signals import Array, to_nanoseconds
 from uvms_dynamics.vehicle import Vehicle
-
-_STABLE_REAL, _STABLE_IMAGINARY = 2.78, 2.82
-"""Where classical Runge-Kutta is stable: |step x eigenvalue| on the real and imaginary axis
-(Hairer and Wanner 1996, sec. IV.2)."""
 
 
 class PlantConfig(Config):
@@ -64,28 +62,13 @@ def initial_joints(vehicle: Vehicle, config: PlantConfig) -> Array:
     return np.radians(degrees)
 
 
-def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
-    """Raise ConfigError where the step is too long for a joint's friction or stop, or a thruster.
-
-    A joint moves at least its rotor, so slope / rotor inertia bounds its eigenvalue from above.
-    """
-    for i, joint in enumerate(vehicle.arm.joints):
-        where, rotor = f"arm.joints.{i} ({joint.name})", joint.rotor_inertia_kg_m2
-        slope = joint.viscous_friction_nm_s
-        slope += joint.coulomb_friction_nm / np.radians(joint.coulomb_width_deg_s)
-        stop = np.sqrt(joint.stop_stiffness_nm_rad / rotor)
-        friction = f"friction of {where} on its rotor inertia (raise coulomb_width_deg_s)"
-        _check_rate(config, slope / rotor, _STABLE_REAL, friction)
-        _check_rate(config, stop, _STABLE_IMAGINARY, f"stop_stiffness_nm_rad of {where}")
-    for i, thruster in enumerate(vehicle.thrusters):
-        lag = f"time_constant_s of thrusters.{i} ({thruster.name})"
-        _check_rate(config, 1.0 / thruster.time_constant_s, _STABLE_REAL, lag)
-
-
-def _check_rate(config: PlantConfig, rate: float, bound: float, cause: str) -> None:
-    """Refuse a step that is unstable with an eigenvalue of this size, 1/s."""
-    if config.step_s * rate > bound:
-        raise ConfigError(
-            f"step_s: {config.step_s:g} s is unstable with the {cause};"
-            f" allowed: at most {bound / rate:.3g} s"
-        )
+def initial_state(vehicle: Vehicle, config: PlantConfig) -> Array:
+    """State of the integrator at t = 0: joints at rest, no thrust."""
+    state = np.zeros(JOINTS + 2 * vehicle.n_joints + vehicle.n_thrusters)
+    quaternion = rpy_to_quat(*np.radians(config.initial_rpy_deg))
+    state[:QUATERNION] = config.initial_position_m
+    state[QUATERNION:VELOCITY] = quaternion
+    state[VELOCITY:JOINTS] = config.initial_velocity
+    state[VELOCITY : VELOCITY + 3] -= quat_to_matrix(quaternion).T @ config.current_ned_m_s
+    state[JOINTS : JOINTS + vehicle.n_joints] = initial_joints(vehicle, config)
+    return state

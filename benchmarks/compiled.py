@@ -1,0 +1,60 @@
+"""Loops in compiled code around the kernels, as a simulation has them: nothing comes from Python.
+
+All that the benchmarks use besides the kernels that `uvms_dynamics` itself names is here.
+"""
+
+from collections.abc import Callable
+
+import numpy as np
+from motions import Motion
+from numba import njit
+
+from uvms_dynamics import Model, Vehicle, build_model
+from uvms_dynamics.integrator import System, advance, make_scratch
+from uvms_dynamics.kernels.forward import forward_dynamics_into
+from uvms_dynamics.kernels.motion import make_workspace
+from uvms_dynamics.signals import Array
+from uvms_dynamics.thrusters import build_thrusters
+
+STEP_S = 0.005
+STEPS = 50
+"""Runge-Kutta steps in one call of `stepping`."""
+
+
+@njit(cache=True)
+def _forward_all(model, quat, nu, q, q_dot, tau, out):
+    """Forward dynamics of every motion; one workspace for all."""
+    work = make_workspace(q.shape[1])
+    for i in range(quat.shape[0]):
+        forward_dynamics_into(model, quat[i], nu[i], q[i], q_dot[i], tau[i], work, out[i])
+
+
+def forward_loop(model: Model, motions: list[Motion]) -> tuple[Callable[[], None], Array]:
+    """A call that computes all motions' accelerations, and the table (k, 6+n) that it fills."""
+    columns = [np.array([getattr(m, k) for m in motions]) for k in Motion._fields]
+    quat, nu, _, q, q_dot, _, tau = columns
+    out = np.empty_like(tau)
+    return lambda: _forward_all(model, quat, nu, q, q_dot, tau, out), out
+
+
+def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[], Array]:
+    """A call that makes STEPS Runge-Kutta steps from a motion; returns the last state.
+
+    With `halvings` it makes more and shorter ones for the same time. The whole plant: thrusters
+    with lag, friction, end stops; states and rates are recorded.
+    """
+    steps, step = STEPS * 2**halvings, STEP_S / 2**halvings
+    n, m = vehicle.n_joints, vehicle.n_thrusters
+    system = System(build_model(vehicle), build_thrusters(vehicle), np.array([0.2, -0.1, 0.0]))
+    start = np.concatenate([np.zeros(3), motion.quat, motion.nu, motion.q, motion.q_dot])
+    start = np.concatenate([start, np.zeros(m)])
+    scratch, thrust, effort = make_scratch(n, m), np.full(m, 2.0), motion.tau[6:].copy()
+    states, rates = np.empty((2, steps + 1, len(start)))
+    state = start.copy()
+
+    def work() -> Array:
+        state[:] = start
+        advance(system, state, thrust, effort, step, scratch, states, rates)
+        return state
+
+    return work
