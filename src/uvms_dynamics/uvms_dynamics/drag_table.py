@@ -18,11 +18,22 @@ FIRST_OCTAVE, LAST_OCTAVE = -10, 23
 """The table covers Re = 2**FIRST_OCTAVE to 2**LAST_OCTAVE, 0.001 to 8 million; what is below has no
 drag to speak of, and no arm goes beyond."""
 
+CELLS = (LAST_OCTAVE - FIRST_OCTAVE) * PER_OCTAVE + 2
+"""Cells of the table; the first and the last one hold the constants below and above it."""
+
 
 def resample(coefficient: DragCoefficient) -> tuple[Array, Array]:
     """Reynolds numbers (k,) and C_D (k,); constant beyond the file's ends."""
-    steps = np.arange((LAST_OCTAVE - FIRST_OCTAVE) * PER_OCTAVE + 1)
+    steps = np.arange(CELLS - 1)
     nodes = 2.0 ** (FIRST_OCTAVE + steps // PER_OCTAVE)
     nodes = nodes * (1.0 + (steps % PER_OCTAVE) / PER_OCTAVE)
     values = np.interp(np.log(nodes), np.log(coefficient.reynolds), coefficient.cd)
     return nodes, values
+
+
+def cell_lines(coefficient: DragCoefficient) -> Array:
+    """(CELLS, 2): a and b of C_D = a + b Re in each cell."""
+    nodes, values = resample(coefficient)
+    slopes = np.diff(values) / np.diff(nodes)
+    inside = np.column_stack([values[:-1] - slopes * nodes[:-1], slopes])
+    return np.vstack([[values[0], 0.0], inside, [values[-1], 0.0]])

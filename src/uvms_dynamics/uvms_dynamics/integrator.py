@@ -9,19 +9,17 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.kernels.arithmetic import root
-from uvms_dynamics.kernels.forward import accelerate, set_hull
+from uvms_dynamics.kernels.primitives import root
+from uvms_dynamics.kernels.forward import accelerate
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.joints import passive_torque
-from uvms_dynamics.kernels.layout import ACCELERATION, HULL, RATE, TORQUE
+from uvms_dynamics.kernels.layout import RATE, TORQUE
 from uvms_dynamics.kernels.motion import (
     down_in_body,
     make_workspace,
     set_angle,
-    to_body,
-    to_hull,
 )
-from uvms_dynamics.kernels.spatial import load3, store
+from uvms_dynamics.kernels.spatial import load6, plus, store6
 from uvms_dynamics.model import Model
 from uvms_dynamics.signals import Array
 from uvms_dynamics.thrusters import Thrusters, thrust_rate
@@ -101,22 +99,28 @@ def finish_step(
 def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
     """Row k of out: the derivative of the state x under these commands."""
     a, b, c, d = _unit_quaternion(x)
-    _set_pose_rates(current, x, a, b, c, d, out, k)
-    set_hull(model, work, down_in_body(a, b, c, d), x, VELOCITY)
+    nu_r = _six(x, VELOCITY)
+    _set_pose_rates(current, nu_r, a, b, c, d, out, k)
     for i in range(1, n + 1):
         angle, rate = x[JOINTS + i - 1], x[JOINTS + n + i - 1]
         set_angle(model, work, i, angle)
         work[i, RATE] = rate
         work[i, TORQUE] = effort[i - 1] + passive_torque(model, i, angle, rate)
         out[k, JOINTS + i - 1] = rate
-    f0, f1, f2, n0, n1, n2 = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
-    f0, f1, f2 = to_hull(model, f0, f1, f2)
-    n0, n1, n2 = to_hull(model, n0, n1, n2)
-    accelerate(model, work, n, f0, f1, f2, n0, n1, n2)
-    _set_velocity_rates(model, work, n, out, k)
+    wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
+    nu_r_dot = accelerate(model, work, n, down_in_body(a, b, c, d), nu_r, wrench)
+    store6(out, k, VELOCITY, nu_r_dot)
+    for i in range(1, n + 1):
+        out[k, JOINTS + n + i - 1] = work[i, RATE]
     for i in range(m):
         thrust = x[JOINTS + 2 * n + i]
         out[k, JOINTS + 2 * n + i] = thrust_rate(thrusters, i, thrust, thrust_command[i])
+
+
+@inner
+def _six(x, k):
+    """Six numbers of the state from k on."""
+    return x[k], x[k + 1], x[k + 2], x[k + 3], x[k + 4], x[k + 5]
 
 
 @inner
@@ -128,10 +132,9 @@ def _unit_quaternion(x):
 
 
 @inner
-def _set_pose_rates(current, x, a, b, c, d, out, k):
+def _set_pose_rates(current, nu_r, a, b, c, d, out, k):
     """Row k of out: p_dot = R v_r + v_c and the quaternion's rate 1/2 quat (omega, 0)."""
-    u, v, w = x[VELOCITY], x[VELOCITY + 1], x[VELOCITY + 2]
-    p, q, r = x[VELOCITY + 3], x[VELOCITY + 4], x[VELOCITY + 5]
+    u, v, w, p, q, r = nu_r
     # R v = v + 2 e x (e x v + d v), with e the vector part
     t0, t1, t2 = b * w - c * v + d * u, c * u - a * w + d * v, a * v - b * u + d * w
     out[k, POSITION] = u + 2.0 * (b * t2 - c * t1) + current[0]
@@ -146,21 +149,14 @@ def _set_pose_rates(current, x, a, b, c, d, out, k):
 @inner
 def _thruster_wrench(thrusters, x, first):
     """Body wrench of the thrusters, whose thrust stands in x from `first` on."""
-    t = x[first]
-    f0, f1, f2 = thrusters[0, 0] * t, thrusters[0, 1] * t, thrusters[0, 2] * t
-    n0, n1, n2 = thrusters[0, 3] * t, thrusters[0, 4] * t, thrusters[0, 5] * t
+    wrench = _scaled_row(thrusters, _FIRST, x[first])
     for i in range(1, thrusters.shape[0]):
-        t = x[first + i]
-        f0, f1, f2 = f0 + thrusters[i, 0] * t, f1 + thrusters[i, 1] * t, f2 + thrusters[i, 2] * t
-        n0, n1, n2 = n0 + thrusters[i, 3] * t, n1 + thrusters[i, 4] * t, n2 + thrusters[i, 5] * t
-    return f0, f1, f2, n0, n1, n2
+        wrench = plus(wrench, _scaled_row(thrusters, i, x[first + i]))
+    return wrench
 
 
 @inner
-def _set_velocity_rates(model, work, n, out, k):
-    """Row k of out: rates of nu_r and q_dot, from the workspace."""
-    a0, a1, a2 = to_body(model, *load3(work, HULL, ACCELERATION))
-    b0, b1, b2 = to_body(model, *load3(work, HULL, ACCELERATION + 3))
-    store(out, k, VELOCITY, a0, a1, a2, b0, b1, b2)
-    for i in range(1, n + 1):
-        out[k, JOINTS + n + i - 1] = work[i, RATE]
+def _scaled_row(thrusters, i, thrust):
+    """Wrench of thruster i."""
+    k = load6(thrusters, i, _FIRST)
+    return k[0] * thrust, k[1] * thrust, k[2] * thrust, k[3] * thrust, k[4] * thrust, k[5] * thrust

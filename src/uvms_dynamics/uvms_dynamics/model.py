@@ -14,12 +14,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.drag_table import resample
+from uvms_dynamics.drag_table import cell_lines
 from uvms_dynamics.kernels import layout
 from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Environment, Hull, Joint, Link, Vehicle
-from uvms_dynamics.vehicle.arm import Arm, DragCylinder
+from uvms_dynamics.vehicle.arm import Arm, DragCoefficient, DragCylinder
 from uvms_dynamics.vehicle.frames import Pose, compose, mounting_pose
 from uvms_dynamics.vehicle.shapes import cylinder_surface, move_to_origin
 
@@ -69,6 +69,7 @@ def distal_pose(joint: Joint) -> Pose:
     return np.array([joint.a_m, 0.0, joint.d_m]), _about_x(math.radians(joint.alpha_deg))
 
 
+_PAIRS = 2 * int(layout.CELLS_A_ROW)
 _IDENTITY: Pose = (np.zeros(3), np.eye(3))
 _NO_TILT = 1e-15  # sine of a twist below which only the sum of the two other angles counts
 
@@ -198,12 +199,9 @@ def _cylinder_rows(cylinder: DragCylinder, pose: Pose, environment: Environment)
     return rows
 
 
-def _coefficient_rows(coefficient) -> Array:
-    """C(Re) at the Reynolds numbers of `drag_table`, 32 to a row; the last one goes on."""
-    values = resample(coefficient)[1]
-    rows = -(-len(values) // layout.COEFFICIENTS_A_ROW)
-    padded = np.full(rows * layout.COEFFICIENTS_A_ROW, values[-1])
-    padded[: len(values)] = values
-    table = np.zeros((rows, layout.MODEL_COLUMNS))
-    table[:, : layout.COEFFICIENTS_A_ROW] = padded.reshape(rows, -1)
+def _coefficient_rows(coefficient: DragCoefficient) -> Array:
+    """Lines C = a + b Re of all cells, 16 to a row."""
+    lines = cell_lines(coefficient).ravel()
+    table = np.zeros((-(-len(lines) // _PAIRS), layout.MODEL_COLUMNS))
+    table[:, :_PAIRS] = np.pad(lines, (0, len(table) * _PAIRS - len(lines))).reshape(-1, _PAIRS)
     return table

@@ -110,24 +110,23 @@ def end_effector_jacobian(model, quat, q):
     jacobian = np.zeros((6, 6 + n))
     unit = np.eye(3)
     for k in range(3):
-        a0, a1, a2 = load3(unit, k, _FIRST)
-        _column(jacobian, k, body, a0, a1, a2, 0.0, 0.0, 0.0)
-        l0, l1, l2 = cross(a0, a1, a2, x, y, z)
-        _column(jacobian, 3 + k, body, l0, l1, l2, a0, a1, a2)
+        axis = load3(unit, k, _FIRST)
+        _column(jacobian, k, body, axis, (0.0, 0.0, 0.0))
+        _column(jacobian, 3 + k, body, cross(axis, (x, y, z)), axis)
     for i in range(1, n + 1):
-        z0, z1, z2 = frames[i, 2], frames[i, 5], frames[i, 8]
+        axis = (frames[i, 2], frames[i, 5], frames[i, 8])
         o0, o1, o2 = load3(frames, i, _ORIGIN)
-        l0, l1, l2 = cross(z0, z1, z2, x - o0, y - o1, z - o2)
-        _column(jacobian, 5 + i, body, l0, l1, l2, z0, z1, z2)
+        _column(jacobian, 5 + i, body, cross(axis, (x - o0, y - o1, z - o2)), axis)
     return jacobian
 
 
 @inner
-def _column(jacobian, column, body, l0, l1, l2, a0, a1, a2):
+def _column(jacobian, column, body, linear, angular):
     """One column, turned from body to world axes."""
     for row in range(3):
-        jacobian[row, column] = body[row, 0] * l0 + body[row, 1] * l1 + body[row, 2] * l2
-        jacobian[3 + row, column] = body[row, 0] * a0 + body[row, 1] * a1 + body[row, 2] * a2
+        b0, b1, b2 = body[row, 0], body[row, 1], body[row, 2]
+        jacobian[row, column] = b0 * linear[0] + b1 * linear[1] + b2 * linear[2]
+        jacobian[3 + row, column] = b0 * angular[0] + b1 * angular[1] + b2 * angular[2]
 
 
 @kernel
@@ -149,8 +148,8 @@ def restoring_wrench(model, quat, q):
         p0 += w * frames[i, _ORIGIN] + m0
         p1 += w * frames[i, _ORIGIN + 1] + m1
         p2 += w * frames[i, _ORIGIN + 2] + m2
-    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    down = down_in_body(quat[0], quat[1], quat[2], quat[3])
     out = np.empty(6)
-    out[0], out[1], out[2] = total * k0, total * k1, total * k2
-    out[3], out[4], out[5] = cross(p0, p1, p2, k0, k1, k2)
+    out[0], out[1], out[2] = total * down[0], total * down[1], total * down[2]
+    out[3], out[4], out[5] = cross((p0, p1, p2), down)
     return out

@@ -2,45 +2,47 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.inertia import add_to_parent, copy_inertia
+from uvms_dynamics.kernels.primitives import zero_like
+from uvms_dynamics.kernels.inertia import (
+    axis_force,
+    inertia_to_parent,
+    load_inertia,
+    plus_inertia,
+    released,
+    solve_inertia,
+)
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
-    ACCELERATION,
-    ANGULAR,
-    ARTICULATED,
     AXIS_FORCE,
-    COUPLING,
-    DOWN,
     FORCE,
     HULL,
+    INERTIA,
     INVERSE,
-    LINEAR,
-    LINEAR_PART,
     RATE,
     ROTOR,
     TORQUE,
-    VELOCITY,
+    VELOCITY_PRODUCT,
 )
 from uvms_dynamics.kernels.motion import (
-    carry_down,
-    carry_velocity,
     down_in_body,
     hull_bias_force,
+    into_body,
+    into_hull,
     link_bias_force,
+    link_velocity,
     make_workspace,
     set_angle,
-    to_body,
     to_hull,
+    velocity_product,
 )
-from uvms_dynamics.kernels.solve import solve_inertia
 from uvms_dynamics.kernels.spatial import (
-    add,
     force_to_parent,
-    load,
-    load3,
+    load6,
+    minus,
     motion_to_child,
-    store,
-    store3,
+    plus,
+    store6,
+    to_child,
 )
 
 
@@ -52,123 +54,114 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     counted, joint friction and stops are not. Articulated-body algorithm (Featherstone 2008,
     sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
     """
-    n = q.shape[0]
-    work, out = make_workspace(n), np.empty(6 + n)
-    set_hull(model, work, down_in_body(quat[0], quat[1], quat[2], quat[3]), nu_r, LINEAR_PART)
-    for i in range(1, n + 1):
-        set_angle(model, work, i, q[i - 1])
-        work[i, RATE], work[i, TORQUE] = q_dot[i - 1], tau[5 + i]
-    f0, f1, f2 = to_hull(model, tau[0], tau[1], tau[2])
-    n0, n1, n2 = to_hull(model, tau[3], tau[4], tau[5])
-    accelerate(model, work, n, f0, f1, f2, n0, n1, n2)
-    out[0], out[1], out[2] = to_body(model, *load3(work, HULL, ACCELERATION))
-    out[3], out[4], out[5] = to_body(model, *load3(work, HULL, ACCELERATION + 3))
-    for i in range(1, n + 1):
-        out[5 + i] = work[i, RATE]
+    out = np.empty(6 + q.shape[0])
+    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, make_workspace(q.shape[0]), out)
     return out
 
 
 @inner
-def set_hull(model, work, down, nu_r, k):
-    """Down direction and velocity of the hull, the latter from nu_r[k : k + 6], body axes."""
-    store3(work, HULL, DOWN, *to_hull(model, *down))
-    store3(work, HULL, VELOCITY, *to_hull(model, nu_r[k], nu_r[k + 1], nu_r[k + 2]))
-    store3(work, HULL, VELOCITY + 3, *to_hull(model, nu_r[k + 3], nu_r[k + 4], nu_r[k + 5]))
+def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
+    """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
+    n = q.shape[0]
+    down = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
+    wrench = (tau[0], tau[1], tau[2], tau[3], tau[4], tau[5])
+    for i in range(1, n + 1):
+        set_angle(model, work, i, q[i - 1])
+        work[i, RATE], work[i, TORQUE] = q_dot[i - 1], tau[5 + i]
+    out[0], out[1], out[2], out[3], out[4], out[5] = accelerate(model, work, n, down, nu, wrench)
+    for i in range(1, n + 1):
+        out[5 + i] = work[i, RATE]
 
 
 @inner
-def accelerate(model, work, n, f0, f1, f2, n0, n1, n2):
-    """Acceleration of the hull and RATE of the joints become accelerations, in place.
+def accelerate(model, work, n, down, nu_r, wrench):
+    """Acceleration of the hull; RATE of the joints becomes their acceleration.
 
-    The workspace holds the hull's velocity and down direction, and angle, rate and torque of each
-    joint; (f, n) is the wrench on the hull, in its frame.
+    The workspace holds angle, rate and torque of each joint; the down direction, nu_r and the
+    wrench on the hull are given in the body frame, as is the result.
     """
-    store(work, HULL, FORCE, *hull_bias_force(model, work))
-    add(work, HULL, FORCE, -f0, -f1, -f2, -n0, -n1, -n2)
-    copy_inertia(model, work, HULL)
+    v, k = into_hull(model, nu_r), to_hull(model, down)
+    bias = minus(hull_bias_force(model, v, k), into_hull(model, wrench))
     for i in range(1, n + 1):  # outward: velocities and bias forces
-        x0, x1, y0, y1 = carry_velocity(model, work, i)
-        work[i, ACCELERATION], work[i, ACCELERATION + 1] = x0, x1
-        work[i, ACCELERATION + 3], work[i, ACCELERATION + 4] = y0, y1
-        carry_down(model, work, i)
-        store(work, i, FORCE, *link_bias_force(model, work, i))
-        copy_inertia(model, work, i)
-    for i in range(n, 0, -1):  # inward: articulated inertias and bias forces
-        _release_joint(model, work, i)
-        _hand_bias_on(model, work, i)
-        add_to_parent(model, work, i)
-    f0, f1, f2, n0, n1, n2 = load(work, HULL, FORCE)
-    store(work, HULL, ACCELERATION, *solve_inertia(work, HULL, -f0, -f1, -f2, -n0, -n1, -n2))
+        rate = work[i, RATE]
+        v, k = link_velocity(model, work, i, v, rate), to_child(model, work, i, k)
+        _store4(work, i, VELOCITY_PRODUCT, velocity_product(v, rate))
+        store6(work, i, FORCE, link_bias_force(model, i, v, k))
+    inertia, force = _gather(model, work, n, v)
+    inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)
+    a = solve_inertia(inertia, minus(_opposite(bias), force))
+    result = into_body(model, a)
     for i in range(1, n + 1):  # outward: accelerations
-        _accelerate_joint(model, work, i)
+        a = _accelerate_joint(model, work, i, a)
+    return result
 
 
 @inner
-def _release_joint(model, work, i):
-    """Articulated inertia of link i, free about its joint: I - U U^T / D.
-
-    U = I S, D = S^T U + rotor, u = tau - S^T p. The joint's motion S is a turn about z, so U is
-    the last column of I.
-    """
-    b, c = ARTICULATED + COUPLING, ARTICULATED + ANGULAR
-    u0, u1, u2 = work[i, b + 2], work[i, b + 5], work[i, b + 8]
-    u3, u4, u5 = work[i, c + 2], work[i, c + 4], work[i, c + 5]
-    inverse = 1.0 / (u5 + model[i, ROTOR])
-    store(work, i, AXIS_FORCE, u0, u1, u2, u3, u4, u5)
-    work[i, INVERSE] = inverse
-    work[i, TORQUE] -= work[i, FORCE + 5]
-    s0, s1, s2, s3, s4 = inverse * u0, inverse * u1, inverse * u2, inverse * u3, inverse * u4
-    add(work, i, ARTICULATED + LINEAR, -s0 * u0, -s0 * u1, -s0 * u2, -s1 * u1, -s1 * u2, -s2 * u2)
-    add(work, i, b, -s0 * u3, -s0 * u4, -s0 * u5, -s1 * u3, -s1 * u4, -s1 * u5)
-    work[i, b + 6] -= s2 * u3
-    work[i, b + 7] -= s2 * u4
-    work[i, b + 8] -= s2 * u5
-    add(work, i, c, -s3 * u3, -s3 * u4, -s3 * u5, -s4 * u4, -s4 * u5, -inverse * u5 * u5)
-
-
-@inner
-def _hand_bias_on(model, work, i):
-    """Add the bias force p + I c + U u / D of link i to its parent's."""
-    gain = work[i, TORQUE] * work[i, INVERSE]
-    f0, f1, f2, n0, n1, n2 = _times_velocity_product(work, i)
-    u0, u1, u2, u3, u4, u5 = load(work, i, AXIS_FORCE)
-    p0, p1, p2, p3, p4, p5 = load(work, i, FORCE)
-    f0, f1, f2 = p0 + (f0 + gain * u0), p1 + (f1 + gain * u1), p2 + (f2 + gain * u2)
-    n0, n1, n2 = p3 + (n0 + gain * u3), p4 + (n1 + gain * u4), p5 + (n2 + gain * u5)
-    f0, f1, f2, n0, n1, n2 = force_to_parent(model, work, i, f0, f1, f2, n0, n1, n2)
-    add(work, i - 1, FORCE, f0, f1, f2, n0, n1, n2)
+def _gather(model, work, n, like):
+    """Articulated inertia and bias force of the whole arm at the hull, from the tip inward."""
+    zero = zero_like(like[0])
+    force = (zero, zero, zero, zero, zero, zero)
+    inertia = force + force + force + (zero, zero, zero)
+    for i in range(n, 0, -1):
+        inertia = plus_inertia(load_inertia(model, i, INERTIA), inertia)
+        force = plus(load6(work, i, FORCE), force)
+        # I - U U^T / D with U = I S, D = S^T U + rotor, and p + I c + U (tau - S^T p) / D
+        u = axis_force(inertia)
+        inverse = 1.0 / (u[5] + model[i, ROTOR])
+        rest = work[i, TORQUE] - force[5]
+        store6(work, i, AXIS_FORCE, u)
+        work[i, INVERSE], work[i, TORQUE] = inverse, rest
+        inertia = released(inertia, u, inverse)
+        force = plus(force, _times_velocity_product(inertia, work, i))
+        force = plus(force, _scaled(rest * inverse, u))
+        force = force_to_parent(model, work, i, force)
+        inertia = inertia_to_parent(model, work, i, inertia)
+    return inertia, force
 
 
 @inner
-def _times_velocity_product(work, i):
-    """I c with the velocity product c = V x S q_dot, which has no part along z."""
-    b, k = ARTICULATED + COUPLING, ACCELERATION
-    x0, x1, y0, y1 = work[i, k], work[i, k + 1], work[i, k + 3], work[i, k + 4]
-    a00, a01, a02, a11, a12, _ = load(work, i, ARTICULATED + LINEAR)
-    c00, c01, c02, c11, c12, _ = load(work, i, ARTICULATED + ANGULAR)
-    b00, b01, b02 = load3(work, i, b)
-    b10, b11, b12 = load3(work, i, b + 3)
-    b20, b21, _ = load3(work, i, b + 6)
+def _accelerate_joint(model, work, i, a):
+    """Acceleration of link i from its parent's, and of its joint."""
+    k = VELOCITY_PRODUCT
+    a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a)
+    a0, a1 = a0 + work[i, k], a1 + work[i, k + 1]
+    b0, b1 = b0 + work[i, k + 2], b1 + work[i, k + 3]
+    u0, u1, u2, u3, u4, u5 = load6(work, i, AXIS_FORCE)
+    needed = (u0 * a0 + u1 * a1 + u2 * a2) + (u3 * b0 + u4 * b1 + u5 * b2)
+    result = (work[i, TORQUE] - needed) * work[i, INVERSE]
+    work[i, RATE] = result
+    return a0, a1, a2, b0, b1, b2 + result
+
+
+@inner
+def _times_velocity_product(inertia, work, i):
+    """I c with the velocity product c, which has no parts along z."""
+    a00, a01, a02, a11, a12, _ = inertia[:6]
+    b00, b01, b02, b10, b11, b12, b20, b21, _ = inertia[6:15]
+    c00, c01, c02, c11, c12, _ = inertia[15:]
+    k = VELOCITY_PRODUCT
+    x0, x1, y0, y1 = work[i, k], work[i, k + 1], work[i, k + 2], work[i, k + 3]
     return (
-        a00 * x0 + a01 * x1 + (b00 * y0 + b01 * y1),
-        a01 * x0 + a11 * x1 + (b10 * y0 + b11 * y1),
-        a02 * x0 + a12 * x1 + (b20 * y0 + b21 * y1),
-        b00 * x0 + b10 * x1 + (c00 * y0 + c01 * y1),
-        b01 * x0 + b11 * x1 + (c01 * y0 + c11 * y1),
-        b02 * x0 + b12 * x1 + (c02 * y0 + c12 * y1),
+        (a00 * x0 + a01 * x1) + (b00 * y0 + b01 * y1),
+        (a01 * x0 + a11 * x1) + (b10 * y0 + b11 * y1),
+        (a02 * x0 + a12 * x1) + (b20 * y0 + b21 * y1),
+        (b00 * x0 + b10 * x1) + (c00 * y0 + c01 * y1),
+        (b01 * x0 + b11 * x1) + (c01 * y0 + c11 * y1),
+        (b02 * x0 + b12 * x1) + (c02 * y0 + c12 * y1),
     )
 
 
 @inner
-def _accelerate_joint(model, work, i):
-    """Acceleration of link i and of its joint from its parent's."""
-    k = ACCELERATION
-    a0, a1, a2, b0, b1, b2 = load(work, i - 1, k)
-    a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a0, a1, a2, b0, b1, b2)
-    a0, a1 = a0 + work[i, k], a1 + work[i, k + 1]
-    b0, b1 = b0 + work[i, k + 3], b1 + work[i, k + 4]
-    u0, u1, u2, u3, u4, u5 = load(work, i, AXIS_FORCE)
-    needed = (u0 * a0 + u1 * a1 + u2 * a2) + (u3 * b0 + u4 * b1 + u5 * b2)
-    result = (work[i, TORQUE] - needed) * work[i, INVERSE]
-    work[i, RATE] = result
-    store(work, i, k, a0, a1, a2, b0, b1, b2 + result)
+def _store4(work, i, k, a):
+    work[i, k], work[i, k + 1], work[i, k + 2], work[i, k + 3] = a[0], a[1], a[2], a[3]
+
+
+@inner
+def _scaled(s, a):
+    return s * a[0], s * a[1], s * a[2], s * a[3], s * a[4], s * a[5]
+
+
+@inner
+def _opposite(a):
+    return -a[0], -a[1], -a[2], -a[3], -a[4], -a[5]

@@ -2,38 +2,29 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.forward import set_hull
+from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import (
-    ACCELERATION,
-    DOWN,
-    FORCE,
-    HULL,
-    INERTIA,
-    LINEAR_PART,
-    RATE,
-    ROTOR,
-)
+from uvms_dynamics.kernels.layout import FORCE, HULL, INERTIA, ROTOR
 from uvms_dynamics.kernels.motion import (
-    carry_down,
-    carry_velocity,
     down_in_body,
     hull_bias_force,
+    into_body,
+    into_hull,
     link_bias_force,
+    link_velocity,
     make_workspace,
     set_angle,
-    to_body,
     to_hull,
+    velocity_product,
 )
 from uvms_dynamics.kernels.spatial import (
-    add,
     force_to_parent,
-    load,
-    load3,
+    load6,
     motion_to_child,
-    store,
-    store3,
+    plus,
+    store6,
     times,
+    to_child,
 )
 
 
@@ -47,12 +38,13 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """
     n = q.shape[0]
     work, out = make_workspace(n), np.empty(6 + n)
-    _set_motion(model, work, down_in_body(quat[0], quat[1], quat[2], quat[3]), nu_r, nu_r_dot)
-    _forces_of_links(model, work, q, q_dot, q_ddot)
-    store(work, HULL, FORCE, *hull_bias_force(model, work))
-    _add_inertia_force(model, work, HULL)
-    _carry_inward(model, work, n)
-    _store_wrench(model, work, 1.0, out)
+    down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
+    v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
+    _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot)
+    force = plus(hull_bias_force(model, v, down), times(load_inertia(model, HULL, INERTIA), a))
+    force = into_body(model, plus(force, _carry_inward(model, work, n)))
+    for k in range(6):
+        out[k] = force[k]
     for i in range(1, n + 1):
         out[5 + i] = work[i, FORCE + 5] + model[i, ROTOR] * q_ddot[i - 1]
     return out
@@ -68,57 +60,41 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """
     n = q.shape[0]
     work, out = make_workspace(n), np.empty(6)
-    _set_motion(model, work, (0.0, 0.0, 0.0), nu_r, nu_r_dot)  # no down, no weight
-    _forces_of_links(model, work, q, q_dot, q_ddot)
-    store(work, HULL, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    _carry_inward(model, work, n)
-    _store_wrench(model, work, -1.0, out)
+    v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
+    no_weight = (0.0, 0.0, 0.0)
+    _forces_of_links(model, work, no_weight, v, a, q, q_dot, q_ddot)
+    force = into_body(model, _carry_inward(model, work, n))
+    for k in range(6):
+        out[k] = -force[k]
     return out
 
 
 @inner
-def _set_motion(model, work, down, nu_r, nu_r_dot):
-    """Down direction, velocity and acceleration of the hull."""
-    set_hull(model, work, down, nu_r, LINEAR_PART)
-    store3(work, HULL, ACCELERATION, *to_hull(model, nu_r_dot[0], nu_r_dot[1], nu_r_dot[2]))
-    store3(work, HULL, ACCELERATION + 3, *to_hull(model, nu_r_dot[3], nu_r_dot[4], nu_r_dot[5]))
-
-
-@inner
-def _forces_of_links(model, work, q, q_dot, q_ddot):
-    """Motion of each link and the force that it needs for it, I a + C v - drag - weight."""
+def _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot):
+    """Force that each link needs for its motion, I a + C v - drag - weight, from the hull out."""
     for i in range(1, q.shape[0] + 1):
         set_angle(model, work, i, q[i - 1])
-        work[i, RATE] = q_dot[i - 1]
-        x0, x1, y0, y1 = carry_velocity(model, work, i)
-        a0, a1, a2, b0, b1, b2 = load(work, i - 1, ACCELERATION)
-        a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a0, a1, a2, b0, b1, b2)
-        b2 += q_ddot[i - 1]
-        store(work, i, ACCELERATION, a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2)
-        carry_down(model, work, i)
-        store(work, i, FORCE, *link_bias_force(model, work, i))
-        _add_inertia_force(model, work, i)
-
-
-@inner
-def _add_inertia_force(model, work, i):
-    """Add I a of body i to its force."""
-    a0, a1, a2, b0, b1, b2 = load(work, i, ACCELERATION)
-    add(work, i, FORCE, *times(model, i, INERTIA, a0, a1, a2, b0, b1, b2))
+        v = link_velocity(model, work, i, v, q_dot[i - 1])
+        down = to_child(model, work, i, down)
+        a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a)
+        x0, x1, y0, y1 = velocity_product(v, q_dot[i - 1])
+        a = (a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2 + q_ddot[i - 1])
+        inertia_force = times(load_inertia(model, i, INERTIA), a)
+        store6(work, i, FORCE, plus(link_bias_force(model, i, v, down), inertia_force))
 
 
 @inner
 def _carry_inward(model, work, n):
-    """Sum the forces from the tip to the hull, eq. (14)-(15); row i: through joint i."""
+    """Sum of the links' forces at the hull, eq. (14)-(15); FORCE of row i: through joint i."""
+    force = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(n, 0, -1):
-        f0, f1, f2, n0, n1, n2 = load(work, i, FORCE)
-        add(work, i - 1, FORCE, *force_to_parent(model, work, i, f0, f1, f2, n0, n1, n2))
+        force = plus(load6(work, i, FORCE), force)
+        store6(work, i, FORCE, force)
+        force = force_to_parent(model, work, i, force)
+    return force
 
 
 @inner
-def _store_wrench(model, work, sign, out):
-    """Force on the hull, in body axes, times a sign."""
-    f0, f1, f2 = to_body(model, *load3(work, HULL, FORCE))
-    n0, n1, n2 = to_body(model, *load3(work, HULL, FORCE + 3))
-    out[0], out[1], out[2] = sign * f0, sign * f1, sign * f2
-    out[3], out[4], out[5] = sign * n0, sign * n1, sign * n2
+def _six(a):
+    """The six numbers of an array."""
+    return a[0], a[1], a[2], a[3], a[4], a[5]

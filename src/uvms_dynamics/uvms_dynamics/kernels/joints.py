@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.arithmetic import hyperbolic_tangent, positive
+from uvms_dynamics.kernels.arithmetic import hyperbolic_tangent
+from uvms_dynamics.kernels.primitives import larger
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     COULOMB,
@@ -40,5 +41,5 @@ def passive_torque(model, i, angle, rate):
 @inner
 def _stop(model, i, depth, speed):
     """Push of an end stop pressed in by depth, rad, at a speed, rad/s; none where depth < 0."""
-    push = model[i, STIFFNESS] * positive(depth)
-    return push * positive(1.0 + model[i, DISSIPATION] * speed)
+    push = model[i, STIFFNESS] * larger(depth, 0.0)
+    return push * larger(1.0 + model[i, DISSIPATION] * speed, 0.0)

@@ -11,13 +11,6 @@ with: a third of the time to compile.
 
 import numpy as np
 
-# Parts of an inertia
-LINEAR, COUPLING, ANGULAR = np.int64(0), np.int64(6), np.int64(15)
-INERTIA_NUMBERS = np.int64(21)
-
-# Parts of a motion or a force
-LINEAR_PART, ANGULAR_PART = np.int64(0), np.int64(3)
-
 # Model (n + 2 + d + c rows, 42): bodies 0..n, fixtures, d rows of drag, c rows of coefficients.
 # Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin
 INERTIA = np.int64(0)  # 21
@@ -53,21 +46,19 @@ STRIPS = np.int64(9)  # how many follow
 STRIP = np.int64(10)  # pairs: place along the axis, 1/2 rho x diameter x length
 STRIPS_A_ROW = 16
 
-# Coefficients C(Re), 32 to a row; see `drag_table`
-COEFFICIENT_BITS = np.int64(5)
-COEFFICIENTS_A_ROW = np.int64(1) << COEFFICIENT_BITS
+# Coefficients of drag, one octave of Reynolds numbers to a row: pairs (a, b) of C(Re) = a + b Re in
+# each cell of `drag_table`; cell k is pair k % 16 of row k // 16
+CELL_BITS = np.uint64(4)
+CELLS_A_ROW = np.uint64(1) << CELL_BITS
 
 MODEL_COLUMNS = np.int64(42)
 
-# Workspace (n+1, 53): row i is what link i goes through and feels, in its own frame
-ARTICULATED = np.int64(0)  # 21: articulated or composite inertia
-VELOCITY = np.int64(21)  # 6
-DOWN = np.int64(27)  # 3: unit vector downward
-FORCE = np.int64(30)  # 6: force on, or bias force of, the body
-ACCELERATION = np.int64(36)  # 6
-AXIS_FORCE = np.int64(42)  # 6: U = I S of the articulated body
-INVERSE = np.int64(48)  # 1 / D of the articulated body
-TORQUE = np.int64(49)  # of the joint; what is left of it for the joint's own acceleration
-COS, SIN = np.int64(50), np.int64(51)  # of the joint angle with its offset
-RATE = np.int64(52)  # of the joint; in the end its acceleration
-WORK_COLUMNS = np.int64(53)
+# Workspace (n+1, 21), row i: of joint i and the link that it moves, in its frame
+COS, SIN = np.int64(0), np.int64(1)  # of the joint angle with its offset
+RATE = np.int64(2)  # of the joint; in the end its acceleration
+TORQUE = np.int64(3)  # of the joint; what is left of it for the joint's own acceleration
+VELOCITY_PRODUCT = np.int64(4)  # 4: V x S q_dot without its two zeros
+FORCE = np.int64(8)  # 6: force on, or bias force of, the body
+AXIS_FORCE = np.int64(14)  # 6: U = I S of the articulated body
+INVERSE = np.int64(20)  # 1 / D of the articulated body
+WORK_COLUMNS = np.int64(21)

@@ -1,38 +1,37 @@
-"""Steps that forward and inverse dynamics share: what body i goes through and feels."""
+"""Steps that forward and inverse dynamics share: what hull and links go through and feel."""
 
 import numpy as np
 
-from uvms_dynamics.kernels.arithmetic import sine_cosine, size
+from uvms_dynamics.kernels.arithmetic import sine_cosine
+from uvms_dynamics.kernels.primitives import size
 from uvms_dynamics.kernels.drag import link_drag
+from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
-    ANGULAR_PART,
     COS,
     COS_TURN,
     DAMPING,
-    DOWN,
-    FORCE,
     HULL,
     INERTIA,
-    LINEAR_PART,
     OFFSET,
     QUADRATIC,
-    RATE,
     SIN,
     SIN_TURN,
-    VELOCITY,
     WORK_COLUMNS,
 )
 from uvms_dynamics.kernels.spatial import (
+    angular,
     gyroscopic,
-    load,
-    load3,
+    linear,
+    load6,
+    minus,
     motion_to_child,
-    store,
-    store3,
-    to_child,
+    pair,
+    plus,
+    turned,
     weight,
 )
+
 
 
 @kernel
@@ -48,17 +47,29 @@ def down_in_body(x, y, z, w):
 
 
 @inner
-def to_hull(model, x, y, z):
-    """Components in the hull's frame of a vector of the body frame: Rz(turn)^T v."""
-    c, s = model[HULL, COS_TURN], model[HULL, SIN_TURN]
-    return c * x + s * y, c * y - s * x, z
+def to_hull(model, a):
+    """Components in the hull's frame of a vector of the body frame: Rz(turn)^T a."""
+    x, y = turned(model[HULL, COS_TURN], -model[HULL, SIN_TURN], a[0], a[1])
+    return x, y, a[2]
 
 
 @inner
-def to_body(model, x, y, z):
+def to_body(model, a):
     """Components in the body frame of a vector of the hull's frame."""
-    c, s = model[HULL, COS_TURN], model[HULL, SIN_TURN]
-    return c * x - s * y, s * x + c * y, z
+    x, y = turned(model[HULL, COS_TURN], model[HULL, SIN_TURN], a[0], a[1])
+    return x, y, a[2]
+
+
+@inner
+def into_hull(model, a):
+    """A motion or force of the body frame in the hull's."""
+    return pair(to_hull(model, linear(a)), to_hull(model, angular(a)))
+
+
+@inner
+def into_body(model, a):
+    """A motion or force of the hull's frame in the body frame."""
+    return pair(to_body(model, linear(a)), to_body(model, angular(a)))
 
 
 @inner
@@ -68,60 +79,49 @@ def set_angle(model, work, i, angle):
 
 
 @inner
-def carry_velocity(model, work, i):
-    """Velocity of link i from its parent's, eq. (2)-(7); returns V x S q_dot's four parts."""
-    rate = work[i, RATE]
-    v0, v1, v2, w0, w1, w2 = load(work, i - 1, VELOCITY)
-    v0, v1, v2, w0, w1, w2 = motion_to_child(model, work, i, v0, v1, v2, w0, w1, w2)
-    store(work, i, VELOCITY, v0, v1, v2, w0, w1, w2 + rate)
-    return rate * v1, -rate * v0, rate * w1, -rate * w0
+def link_velocity(model, work, i, v, rate):
+    """Velocity of link i from its parent's, eq. (2)-(7)."""
+    v0, v1, v2, w0, w1, w2 = motion_to_child(model, work, i, v)
+    return v0, v1, v2, w0, w1, w2 + rate
 
 
 @inner
-def carry_down(model, work, i):
-    """Down direction in frame i."""
-    k0, k1, k2 = load3(work, i - 1, DOWN)
-    k0, k1, k2 = to_child(model, work, i, k0, k1, k2)
-    store3(work, i, DOWN, k0, k1, k2)
+def velocity_product(v, rate):
+    """V x S q_dot = (v0, v1, w0, w1): acceleration of a link for its turning in a moving frame.
+
+    Parts along z there are none.
+    """
+    return rate * v[1], -rate * v[0], rate * v[4], -rate * v[3]
 
 
 @inner
-def link_bias_force(model, work, i):
+def link_bias_force(model, i, v, down):
     """C(v) v less weight, buoyancy and drag of link i: the force that it needs besides I a."""
-    v0, v1, v2, w0, w1, w2 = load(work, i, VELOCITY)
-    f0, f1, f2, n0, n1, n2 = _unresisted(model, work, i)
-    d0, d1, d2, m0, m1, m2 = link_drag(model, i, v0, v1, v2, w0, w1, w2)
-    return f0 - d0, f1 - d1, f2 - d2, n0 - m0, n1 - m1, n2 - m2
+    return minus(_unresisted(model, i, v, down), link_drag(model, i, v))
 
 
 @inner
-def hull_bias_force(model, work):
+def hull_bias_force(model, v, down):
     """C(v) v less weight and buoyancy, with damping, of the hull, in its frame."""
-    v0, v1, v2, w0, w1, w2 = load(work, HULL, VELOCITY)
-    f0, f1, f2, n0, n1, n2 = _unresisted(model, work, HULL)
-    v0, v1, v2 = damping(model, LINEAR_PART, *to_body(model, v0, v1, v2))
-    w0, w1, w2 = damping(model, ANGULAR_PART, *to_body(model, w0, w1, w2))
-    v0, v1, v2 = to_hull(model, v0, v1, v2)
-    w0, w1, w2 = to_hull(model, w0, w1, w2)
-    return f0 + v0, f1 + v1, f2 + v2, n0 + w0, n1 + w1, n2 + w2
+    resisted = into_hull(model, hull_damping(model, into_body(model, v)))
+    return plus(_unresisted(model, HULL, v, down), resisted)
 
 
 @inner
-def damping(model, k, x, y, z):
-    """Linear and quadratic damping of three degrees of freedom, (d_k + d_kk |x|) x; body axes."""
-    linear, quadratic = load3(model, HULL, DAMPING + k), load3(model, HULL, QUADRATIC + k)
+def hull_damping(model, nu):
+    """Linear and quadratic damping of each degree of freedom, (d_k + d_kk |x|) x; body axes."""
+    d, e = load6(model, HULL, DAMPING), load6(model, HULL, QUADRATIC)
     return (
-        (linear[0] + quadratic[0] * size(x)) * x,
-        (linear[1] + quadratic[1] * size(y)) * y,
-        (linear[2] + quadratic[2] * size(z)) * z,
+        (d[0] + e[0] * size(nu[0])) * nu[0],
+        (d[1] + e[1] * size(nu[1])) * nu[1],
+        (d[2] + e[2] * size(nu[2])) * nu[2],
+        (d[3] + e[3] * size(nu[3])) * nu[3],
+        (d[4] + e[4] * size(nu[4])) * nu[4],
+        (d[5] + e[5] * size(nu[5])) * nu[5],
     )
 
 
 @inner
-def _unresisted(model, work, i):
+def _unresisted(model, i, v, down):
     """C(v) v less weight and buoyancy of body i."""
-    v0, v1, v2, w0, w1, w2 = load(work, i, VELOCITY)
-    f0, f1, f2, n0, n1, n2 = gyroscopic(model, i, INERTIA, v0, v1, v2, w0, w1, w2)
-    k0, k1, k2 = load3(work, i, DOWN)
-    g0, g1, g2, m0, m1, m2 = weight(model, i, k0, k1, k2)
-    return f0 - g0, f1 - g1, f2 - g2, n0 - m0, n1 - m1, n2 - m2
+    return minus(gyroscopic(load_inertia(model, i, INERTIA), v), weight(model, i, down))
