@@ -38,7 +38,7 @@ class Run:
         """States (k+1, nx) at every step."""
         steps = round(duration / step)
         x, states = self.state.copy(), np.empty((steps + 1, len(self.state)))
-        scratch = make_scratch(self.n, self.vehicle.n_thrusters)
+        scratch = make_scratch(self.system)
         thrust, effort = np.zeros(self.vehicle.n_thrusters), np.zeros(self.n)
         advance(self.system, x, thrust, effort, step, scratch, states, np.empty_like(states))
         return states

@@ -13,7 +13,8 @@ from uvms_dynamics.kernels.primitives import root
 from uvms_dynamics.kernels.forward import accelerate
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.joints import passive_torque
-from uvms_dynamics.kernels.layout import RATE, TORQUE
+from uvms_dynamics.kernels.layout import HULL, RATE, TORQUE
+from uvms_dynamics.kernels.layout import JOINTS as N_JOINTS
 from uvms_dynamics.kernels.motion import (
     down_in_body,
     make_workspace,
@@ -45,10 +46,15 @@ class Scratch(NamedTuple):
     trial: Array  # (nx,)
 
 
-def make_scratch(n: int, m: int) -> Scratch:
-    """Scratch tables for n joints and m thrusters."""
-    size = JOINTS + 2 * n + m
-    return Scratch(make_workspace(n), np.empty((4, size)), np.empty(size))
+def make_scratch(system: System) -> Scratch:
+    """Scratch tables for a system."""
+    size = state_size(system)
+    return Scratch(make_workspace(system.model), np.empty((4, size)), np.empty(size))
+
+
+def state_size(system: System) -> int:
+    """Length of the state: 13 + 2n + m."""
+    return int(JOINTS + 2 * system.model[HULL, N_JOINTS]) + len(system.thrusters)
 
 
 @kernel

@@ -16,6 +16,7 @@ import numpy as np
 
 from uvms_dynamics.drag_table import cell_lines
 from uvms_dynamics.kernels import layout
+from uvms_dynamics.kernels.lanes import LANES
 from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Environment, Hull, Joint, Link, Vehicle
@@ -24,7 +25,7 @@ from uvms_dynamics.vehicle.frames import Pose, compose, mounting_pose
 from uvms_dynamics.vehicle.shapes import cylinder_surface, move_to_origin
 
 Model = Array
-"""Table (rows, 42), C-contiguous, SI and rad; columns: `uvms_dynamics.kernels.layout`."""
+"""Table (rows, 48), C-contiguous, SI and rad; columns: `uvms_dynamics.kernels.layout`."""
 
 
 class _Mount(NamedTuple):
@@ -45,15 +46,15 @@ def build_model(vehicle: Vehicle) -> Model:
     turns = [mount.turn for mount in mounts] + [0.0]
     poses = [_turned(turn, pose) for turn, pose in zip(turns[1:], distal, strict=True)]
     n = vehicle.n_joints
-    drag, ends = _drag_rows(arm, poses, environment, first=n + 2)
-    cross_flow = _coefficient_rows(arm.drag_coefficient)
-    axial = _coefficient_rows(arm.friction_coefficient)
     rows = np.zeros((n + 2, layout.MODEL_COLUMNS))
     _set_body(rows[0], vehicle.hull, _turned(turns[0], _IDENTITY), environment)
     _set_hull(rows[0], vehicle.hull, turns[0])
-    rows[0, layout.JOINTS] = n
-    rows[0, layout.CROSS_FLOW] = n + 2 + len(drag)
-    rows[0, layout.AXIAL] = rows[0, layout.CROSS_FLOW] + len(cross_flow)
+    groups, strips, ends = _drag_groups(arm, poses, environment)
+    tables = [rows, *(_as_rows(x) for x in (groups, *map(cell_lines, _coefficients(arm))))]
+    starts = np.cumsum([table.size for table in tables])
+    _put(rows[0], layout.JOINTS, [n])
+    _put(rows[0], layout.CYLINDERS, [starts[0], len(groups), strips])
+    _put(rows[0], layout.CROSS_FLOW, starts[1:3])
     for i, (link, joint, mount, pose) in enumerate(
         zip(arm.links, arm.joints, mounts, poses, strict=True), start=1
     ):
@@ -61,7 +62,7 @@ def build_model(vehicle: Vehicle) -> Model:
         _set_joint(rows[i], joint, mount, turns[i])
         rows[i, [layout.DRAG_BEGIN, layout.DRAG_END]] = ends[i - 1 : i + 1]
     _set_fixtures(rows[n + 1], vehicle, compose(poses[-1], mounting_pose(arm.tool)))
-    return np.ascontiguousarray(np.vstack([rows, drag, cross_flow, axial]))
+    return np.ascontiguousarray(np.vstack(tables))
 
 
 def distal_pose(joint: Joint) -> Pose:
@@ -69,7 +70,6 @@ def distal_pose(joint: Joint) -> Pose:
     return np.array([joint.a_m, 0.0, joint.d_m]), _about_x(math.radians(joint.alpha_deg))
 
 
-_PAIRS = 2 * int(layout.CELLS_A_ROW)
 _IDENTITY: Pose = (np.zeros(3), np.eye(3))
 _NO_TILT = 1e-15  # sine of a twist below which only the sum of the two other angles counts
 
@@ -166,42 +166,49 @@ def _moved(inertia: Array, pose: Pose) -> Array:
     return 0.5 * (moved + moved.T)
 
 
-def _drag_rows(
-    arm: Arm, poses: list[Pose], environment: Environment, first: int
-) -> tuple[Array, list[int]]:
-    """Rows of all cylinders, and where each link's begin and the last one's end."""
-    rows: list[Array] = []
-    ends = [first]
+def _drag_groups(
+    arm: Arm, poses: list[Pose], environment: Environment
+) -> tuple[Array, int, list[int]]:
+    """Cylinders in groups of eight, strips on each, and where each link's cylinders begin.
+
+    A group is (numbers, 8); where cylinders have fewer strips than others, the rest have no area.
+    """
+    cylinders: list[Array] = []
+    ends = [0]
     for link, pose in zip(arm.links, poses, strict=True):
-        for cylinder in link.drag:
-            rows.extend(_cylinder_rows(cylinder, pose, environment))
-        ends.append(first + len(rows))
-    return np.array(rows).reshape(-1, layout.MODEL_COLUMNS), ends
+        cylinders += [_cylinder(cylinder, pose, environment) for cylinder in link.drag]
+        ends.append(len(cylinders))
+    length = max((len(each) for each in cylinders), default=int(layout.STRIP))
+    table = np.zeros((-(-len(cylinders) // LANES) * LANES, length))
+    for row, numbers in zip(table, cylinders, strict=False):
+        row[: len(numbers)] = numbers
+    groups = table.reshape(-1, LANES, length).transpose(0, 2, 1)
+    return groups, (length - int(layout.STRIP)) // 2, ends
 
 
-def _cylinder_rows(cylinder: DragCylinder, pose: Pose, environment: Environment) -> list[Array]:
-    """A cylinder's strips at Gauss-Legendre stations; as many to a row as there is room for."""
+def _cylinder(cylinder: DragCylinder, pose: Pose, environment: Environment) -> Array:
+    """Numbers of a cylinder; its strips are at Gauss-Legendre stations."""
     position, rotation = pose
     half, pressure = 0.5 * cylinder.length_m, 0.5 * environment.water_density_kg_m3
     viscosity, diameter = environment.kinematic_viscosity_m2_s, 2.0 * cylinder.radius_m
     nodes, weights = np.polynomial.legendre.leggauss(cylinder.stations)
     strips = np.column_stack([half * nodes, pressure * diameter * half * weights])
-    surface = pressure * cylinder_surface(cylinder)
-    rows = []
-    for begin in range(0, len(strips), layout.STRIPS_A_ROW):
-        part, row = strips[begin : begin + layout.STRIPS_A_ROW], np.zeros(layout.MODEL_COLUMNS)
-        _put(row, layout.CENTER, position + rotation @ cylinder.center_m)
-        _put(row, layout.AXIS, rotation @ cylinder.axis)
-        _put(row, layout.CROSS_REYNOLDS, [diameter / viscosity, cylinder.length_m / viscosity])
-        _put(row, layout.AXIAL_AREA, [0.0 if begin else surface])  # counted once
-        _put(row, layout.STRIPS, [len(part), *part.ravel()])
-        rows.append(row)
-    return rows
+    row = np.zeros(int(layout.STRIP) + strips.size)
+    _put(row, layout.CENTER, position + rotation @ cylinder.center_m)
+    _put(row, layout.AXIS, rotation @ cylinder.axis)
+    _put(row, layout.CROSS_REYNOLDS, [diameter / viscosity, cylinder.length_m / viscosity])
+    _put(row, layout.AXIAL_AREA, [pressure * cylinder_surface(cylinder)])
+    _put(row, layout.STRIP, strips.ravel())
+    return row
 
 
-def _coefficient_rows(coefficient: DragCoefficient) -> Array:
-    """Lines C = a + b Re of all cells, 16 to a row."""
-    lines = cell_lines(coefficient).ravel()
-    table = np.zeros((-(-len(lines) // _PAIRS), layout.MODEL_COLUMNS))
-    table[:, :_PAIRS] = np.pad(lines, (0, len(table) * _PAIRS - len(lines))).reshape(-1, _PAIRS)
+def _coefficients(arm: Arm) -> tuple[DragCoefficient, DragCoefficient]:
+    return arm.drag_coefficient, arm.friction_coefficient
+
+
+def _as_rows(values: Array) -> Array:
+    """Any numbers one after the other as rows of the table."""
+    rows = -(-values.size // layout.MODEL_COLUMNS)
+    table = np.zeros((rows, layout.MODEL_COLUMNS))
+    table.ravel()[: values.size] = values.ravel()
     return table

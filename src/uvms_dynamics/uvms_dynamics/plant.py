@@ -46,7 +46,7 @@ class Plant:
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
         current = np.array(config.current_ned_m_s, dtype=float)
         self._system = System(build_model(vehicle), build_thrusters(vehicle), current)
-        self._scratch = make_scratch(vehicle.n_joints, vehicle.n_thrusters)
+        self._scratch = make_scratch(self._system)
         self._state = initial_state(vehicle, config)
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)

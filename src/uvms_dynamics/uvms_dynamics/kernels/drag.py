@@ -1,119 +1,239 @@
-"""Drag of the links, cylinder by cylinder: cross flow by strips and friction along the axis."""
+"""Drag of the links: cross flow over cylinders by strips, and friction along their axes.
+
+The cylinders of an arm are independent of each other, so a single simulation works on eight of them
+at once: its links leave their velocities in slots, eight cylinders to a group, and fetch forces
+from there. Many simulations at once take one cylinder after the other. Both use `_cylinder_drag`.
+"""
 
 import numpy as np
+from numba import types
 from numba.extending import overload
 
 from uvms_dynamics.drag_table import FIRST_OCTAVE, LAST_OCTAVE, PER_OCTAVE_BITS
 from uvms_dynamics.kernels.jit import OPTIONS, inner
+from uvms_dynamics.kernels.lanes import (
+    LANES,
+    LaneArrayType,
+    LanesType,
+    lane_of,
+    lanes_at,
+    put_lanes,
+    with_lane,
+)
 from uvms_dynamics.kernels.layout import (
     AXIAL,
     AXIAL_AREA,
     AXIAL_REYNOLDS,
     AXIS,
-    CELL_BITS,
-    CELLS_A_ROW,
     CENTER,
     CROSS_FLOW,
     CROSS_REYNOLDS,
+    CYLINDERS,
     DRAG_BEGIN,
     DRAG_END,
+    FORCE,
+    GROUPS,
     HULL,
+    JOINTS,
     STRIP,
     STRIPS,
+    WORK_COLUMNS,
 )
-from uvms_dynamics.kernels.lanes import LANES, LanesType, lane_of, with_lane
-from uvms_dynamics.kernels.primitives import larger, root, size, smaller, zero_like
-from uvms_dynamics.kernels.spatial import angular, cross, linear, load3, pair, plus, plus3
+from uvms_dynamics.kernels.primitives import item, larger, put_item, root, size, smaller, zero_like
+from uvms_dynamics.kernels.spatial import angular, cross, linear, load6, minus, pair, plus3, store6
 
 _LOWEST, _HIGHEST = 2.0**FIRST_OCTAVE, 2.0**LAST_OCTAVE
 _SHIFT = np.int64(52 - PER_OCTAVE_BITS)  # a float64 has 52 bits of mantissa below its exponent
 _BEFORE = np.int64((1023 + FIRST_OCTAVE) << PER_OCTAVE_BITS)  # 1023: the exponent's bias
-_ONE, _IN_ROW = np.uint64(1), CELLS_A_ROW - np.uint64(1)
+SLOT_NUMBERS = 12  # of a cylinder: velocity of its link, then force on it
+
+
+def meet_water(model, work, i, v):
+    """Drag on link i for its velocity: what it must overcome is in FORCE after `resist`."""
+
+
+def resist(model, work):
+    """Add what all links must overcome to their FORCE."""
+
+
+@overload(meet_water, jit_options=OPTIONS)
+def _meet_water(model, work, i, v):
+    if isinstance(work, LaneArrayType):
+        return _meet_water_now
+    return _leave_velocity
+
+
+@overload(resist, jit_options=OPTIONS)
+def _resist(model, work):
+    if isinstance(work, LaneArrayType):
+        return lambda model, work: None
+    return _resist_by_groups
+
+
+def _meet_water_now(model, work, i, v):
+    strips, block = np.int64(model[HULL, STRIPS]), np.int64(model[HULL, CYLINDERS])
+    stride = LANES * (STRIP + 2 * strips)
+    force = load6(work, i, FORCE)
+    for slot in range(np.int64(model[i, DRAG_BEGIN]), np.int64(model[i, DRAG_END])):
+        group, lane = slot // LANES, slot % LANES
+        force = minus(force, _cylinder_drag(model, block + group * stride, strips, lane, v))
+    store6(work, i, FORCE, force)
+
+
+def _leave_velocity(model, work, i, v):
+    for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
+        first = _slot(model, slot)
+        for k in range(6):
+            put_item(work, first + LANES * k, v[k])
+
+
+def _resist_by_groups(model, work):
+    strips, block = np.int64(model[HULL, STRIPS]), np.int64(model[HULL, CYLINDERS])
+    stride = LANES * (STRIP + 2 * strips)
+    n, slots = np.int64(model[HULL, JOINTS]), _slot(model, 0)
+    for group in range(np.int64(model[HULL, GROUPS])):
+        first = slots + LANES * SLOT_NUMBERS * group
+        v = _six_lanes(work, first)
+        force = _cylinder_drag(model, block + group * stride, strips, None, v)
+        for k in range(6):
+            put_lanes(work, first + LANES * (6 + k), force[k])
+    for i in range(1, n + 1):
+        force = load6(work, i, FORCE)
+        for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
+            force = minus(force, _six_items(work, _slot(model, slot) + 6 * LANES))
+        store6(work, i, FORCE, force)
 
 
 @inner
-def link_drag(model, i, v):
-    """Drag on link i about its frame's origin, from its motion through the water."""
-    zero = zero_like(v[0])
-    drag = (zero, zero, zero, zero, zero, zero)
-    for row in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
-        drag = plus(drag, _cylinder_drag(model, row, v))
-    return drag
+def _slot(model, slot):
+    """First item of a slot in the workspace, behind the rows of the bodies."""
+    bodies = (np.int64(model[HULL, JOINTS]) + 1) * WORK_COLUMNS
+    group, lane = np.uint64(slot) // np.uint64(LANES), np.uint64(slot) % np.uint64(LANES)
+    return bodies + np.int64(np.uint64(LANES * SLOT_NUMBERS) * group + lane)
 
 
 @inner
-def _cylinder_drag(model, row, v):
-    """Drag of one cylinder.
+def _six_lanes(work, k):
+    return (
+        lanes_at(work, k),
+        lanes_at(work, k + LANES),
+        lanes_at(work, k + 2 * LANES),
+        lanes_at(work, k + 3 * LANES),
+        lanes_at(work, k + 4 * LANES),
+        lanes_at(work, k + 5 * LANES),
+    )
+
+
+@inner
+def _six_items(work, k):
+    return (
+        item(work, k),
+        item(work, k + LANES),
+        item(work, k + 2 * LANES),
+        item(work, k + 3 * LANES),
+        item(work, k + 4 * LANES),
+        item(work, k + 5 * LANES),
+    )
+
+
+@inner
+def _cylinder_drag(model, block, strips, lane, v):
+    """Drag of one cylinder of a group, or of all eight (lane is None), about the link's origin.
 
     Across the axis df = -1/2 rho C_D(Re) D |u| u ds, with u the velocity of the strip at s across
     the axis and Re = |u| D / viscosity (section 2.2.1). Along it f = -1/2 rho C_f S |u_a| u_a
     with the wetted surface S: all strips move along the axis alike.
     """
-    center, axis = load3(model, row, CENTER), load3(model, row, AXIS)
+    center, axis = _three(model, block, CENTER, lane), _three(model, block, AXIS, lane)
     u = plus3(linear(v), cross(angular(v), center))
-    along = u[0] * axis[0] + u[1] * axis[1] + u[2] * axis[2]
+    along = _dot(u, axis)
     u = u[0] - along * axis[0], u[1] - along * axis[1], u[2] - along * axis[2]
     turn = cross(angular(v), axis)
-    force, lever = _strip_drag(model, row, u, turn)
-    first = np.uint64(model[HULL, AXIAL])
-    friction = coefficient(model, first, model[row, AXIAL_REYNOLDS] * size(along))
-    friction *= model[row, AXIAL_AREA] * size(along) * along
+    sum0, sum1, sum2 = _strip_sums(model, block, strips, lane, u, turn)
+    friction = _number(model, block, AXIAL_AREA, lane) * size(along) * along
+    reynolds = _number(model, block, AXIAL_REYNOLDS, lane) * size(along)
+    friction *= coefficient(model, np.int64(model[HULL, AXIAL]), reynolds)
     force = (
-        force[0] - friction * axis[0],
-        force[1] - friction * axis[1],
-        force[2] - friction * axis[2],
+        -(u[0] * sum0 + turn[0] * sum1 + friction * axis[0]),
+        -(u[1] * sum0 + turn[1] * sum1 + friction * axis[1]),
+        -(u[2] * sum0 + turn[2] * sum1 + friction * axis[2]),
+    )
+    lever = (
+        -(u[0] * sum1 + turn[0] * sum2),
+        -(u[1] * sum1 + turn[1] * sum2),
+        -(u[2] * sum1 + turn[2] * sum2),
     )
     return pair(force, plus3(cross(center, force), cross(axis, lever)))
 
 
 @inner
-def _strip_drag(model, row, u, turn):
-    """Sums of f and s f over the strips at s, whose velocity across the axis is u + s turn."""
-    zero = zero_like(u[0])
-    f0, f1, f2, g0, g1, g2 = zero, zero, zero, zero, zero, zero
-    first, reynolds = np.uint64(model[HULL, CROSS_FLOW]), model[row, CROSS_REYNOLDS]
-    for strip in range(np.int64(model[row, STRIPS])):
-        k = STRIP + 2 * strip
-        s = model[row, k]
-        x0, x1, x2 = u[0] + s * turn[0], u[1] + s * turn[1], u[2] + s * turn[2]
-        speed = root(x0 * x0 + x1 * x1 + x2 * x2)
-        scale = model[row, k + 1] * (coefficient(model, first, reynolds * speed) * speed)
-        f0, f1, f2 = f0 - scale * x0, f1 - scale * x1, f2 - scale * x2
-        scale *= s
-        g0, g1, g2 = g0 - scale * x0, g1 - scale * x1, g2 - scale * x2
-    return (f0, f1, f2), (g0, g1, g2)
+def _strip_sums(model, block, strips, lane, u, turn):
+    """Sums of k, s k and s^2 k over the strips at s, each of which resists with -k (u + s turn)."""
+    slip, mixed, spin = _dot(u, u), 2.0 * _dot(u, turn), _dot(turn, turn)
+    first, per_speed = np.int64(model[HULL, CROSS_FLOW]), _number(model, block, CROSS_REYNOLDS, lane)
+    sum0, sum1, sum2 = zero_like(u[0]), zero_like(u[0]), zero_like(u[0])
+    for strip in range(strips):
+        s = _number(model, block, STRIP + 2 * strip, lane)
+        area = _number(model, block, STRIP + 2 * strip + 1, lane)
+        speed = root(larger(slip + s * (mixed + s * spin), 0.0))  # rounding may go below zero
+        k = area * (coefficient(model, first, per_speed * speed) * speed)
+        sum0, sum1, sum2 = sum0 + k, sum1 + s * k, sum2 + s * (s * k)
+    return sum0, sum1, sum2
+
+
+@inner
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner
+def _three(model, block, k, lane):
+    """A vector of a cylinder."""
+    return (
+        _number(model, block, k, lane),
+        _number(model, block, k + 1, lane),
+        _number(model, block, k + 2, lane),
+    )
+
+
+def _number(model, block, k, lane):
+    """Number k of a cylinder, or of all eight of a group where lane is None."""
+
+
+@overload(_number, jit_options=OPTIONS)
+def _number_of(model, block, k, lane):
+    if isinstance(lane, types.NoneType):
+        return lambda model, block, k, lane: lanes_at(model, block + LANES * k)
+    return lambda model, block, k, lane: item(model, block + LANES * k + lane)
 
 
 @inner
 def coefficient(model, first, reynolds):
     """C(Re), linear in each cell of `drag_table`, constant beyond its ends."""
     inside = smaller(larger(reynolds, _LOWEST), _HIGHEST)
-    a, b = cell_line(model, first, inside)
+    a, b = _cell_line(model, first, inside)
     return a + b * inside
 
 
-@inner
 def _cell_line(model, first, reynolds):
     """The line (a, b) of the cell in which a Reynolds number lies: its highest bits say which."""
-    cell = np.uint64((np.float64(reynolds).view(np.int64) >> _SHIFT) - _BEFORE)
-    row, column = first + (cell >> CELL_BITS), (cell & _IN_ROW) << _ONE
-    return model[row, column], model[row, column + _ONE]
 
 
-def cell_line(model, first, reynolds):
-    """The same of a number or of lanes, each of which looks up its own."""
-
-
-@overload(cell_line, jit_options=OPTIONS)
+@overload(_cell_line, jit_options=OPTIONS)
 def _cell_line_of(model, first, reynolds):
-    if not isinstance(reynolds, LanesType):
-        return lambda model, first, reynolds: _cell_line(model, first, reynolds)
+    if isinstance(reynolds, LanesType):
+        return _cell_lines
+    return _one_cell_line
 
-    def of_lanes(model, first, reynolds):
-        a, b = reynolds, reynolds
-        for lane in range(LANES):
-            low, slope = _cell_line(model, first, lane_of(reynolds, lane))
-            a, b = with_lane(a, lane, low), with_lane(b, lane, slope)
-        return a, b
 
-    return of_lanes
+def _one_cell_line(model, first, reynolds):
+    cell = first + 2 * ((np.float64(reynolds).view(np.int64) >> _SHIFT) - _BEFORE)
+    return item(model, cell), item(model, cell + 1)
+
+
+def _cell_lines(model, first, reynolds):
+    a, b = reynolds, reynolds
+    for lane in range(LANES):
+        low, slope = _cell_line(model, first, lane_of(reynolds, lane))
+        a, b = with_lane(a, lane, low), with_lane(b, lane, slope)
+    return a, b

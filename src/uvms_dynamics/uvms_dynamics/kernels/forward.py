@@ -3,6 +3,7 @@
 import numpy as np
 
 from uvms_dynamics.kernels.primitives import zero_like
+from uvms_dynamics.kernels.drag import resist
 from uvms_dynamics.kernels.inertia import (
     axis_force,
     inertia_to_parent,
@@ -28,15 +29,16 @@ from uvms_dynamics.kernels.motion import (
     hull_bias_force,
     into_body,
     into_hull,
-    link_bias_force,
     link_velocity,
     make_workspace,
     set_angle,
+    set_link_force,
     to_hull,
     velocity_product,
 )
 from uvms_dynamics.kernels.spatial import (
     force_to_parent,
+    linear,
     load6,
     minus,
     motion_to_child,
@@ -55,7 +57,7 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
     """
     out = np.empty(6 + q.shape[0])
-    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, make_workspace(q.shape[0]), out)
+    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, make_workspace(model), out)
     return out
 
 
@@ -82,12 +84,14 @@ def accelerate(model, work, n, down, nu_r, wrench):
     wrench on the hull are given in the body frame, as is the result.
     """
     v, k = into_hull(model, nu_r), to_hull(model, down)
+    none = _zeros(v[0])
     bias = minus(hull_bias_force(model, v, k), into_hull(model, wrench))
     for i in range(1, n + 1):  # outward: velocities and bias forces
         rate = work[i, RATE]
         v, k = link_velocity(model, work, i, v, rate), to_child(model, work, i, k)
         _store4(work, i, VELOCITY_PRODUCT, velocity_product(v, rate))
-        store6(work, i, FORCE, link_bias_force(model, i, v, k))
+        set_link_force(model, work, i, v, k, none)
+    resist(model, work)
     inertia, force = _gather(model, work, n, v)
     inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)
     a = solve_inertia(inertia, minus(_opposite(bias), force))
@@ -100,9 +104,8 @@ def accelerate(model, work, n, down, nu_r, wrench):
 @inner
 def _gather(model, work, n, like):
     """Articulated inertia and bias force of the whole arm at the hull, from the tip inward."""
-    zero = zero_like(like[0])
-    force = (zero, zero, zero, zero, zero, zero)
-    inertia = force + force + force + (zero, zero, zero)
+    force = _zeros(like[0])
+    inertia = force + force + force + linear(force)
     for i in range(n, 0, -1):
         inertia = plus_inertia(load_inertia(model, i, INERTIA), inertia)
         force = plus(load6(work, i, FORCE), force)
@@ -150,6 +153,12 @@ def _times_velocity_product(inertia, work, i):
         (b01 * x0 + b11 * x1) + (c01 * y0 + c11 * y1),
         (b02 * x0 + b12 * x1) + (c02 * y0 + c12 * y1),
     )
+
+
+@inner
+def _zeros(like):
+    zero = zero_like(like)
+    return zero, zero, zero, zero, zero, zero
 
 
 @inner

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from uvms_dynamics.kernels.drag import resist
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import FORCE, HULL, INERTIA, ROTOR
@@ -10,10 +11,10 @@ from uvms_dynamics.kernels.motion import (
     hull_bias_force,
     into_body,
     into_hull,
-    link_bias_force,
     link_velocity,
     make_workspace,
     set_angle,
+    set_link_force,
     to_hull,
     velocity_product,
 )
@@ -37,7 +38,7 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     the derivative of its components; quat (4,); q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
     """
     n = q.shape[0]
-    work, out = make_workspace(n), np.empty(6 + n)
+    work, out = make_workspace(model), np.empty(6 + n)
     down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
     v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
     _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot)
@@ -59,7 +60,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     `inverse_dynamics`; body frame.
     """
     n = q.shape[0]
-    work, out = make_workspace(n), np.empty(6)
+    work, out = make_workspace(model), np.empty(6)
     v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
     no_weight = (0.0, 0.0, 0.0)
     _forces_of_links(model, work, no_weight, v, a, q, q_dot, q_ddot)
@@ -80,7 +81,8 @@ def _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot):
         x0, x1, y0, y1 = velocity_product(v, q_dot[i - 1])
         a = (a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2 + q_ddot[i - 1])
         inertia_force = times(load_inertia(model, i, INERTIA), a)
-        store6(work, i, FORCE, plus(link_bias_force(model, i, v, down), inertia_force))
+        set_link_force(model, work, i, v, down, inertia_force)
+    resist(model, work)
 
 
 @inner

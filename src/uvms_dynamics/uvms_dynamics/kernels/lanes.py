@@ -58,22 +58,23 @@ def _spread(context: Any, builder: Any, kind: types.Type, _lanes: LanesType, val
     return builder.shuffle_vector(first, ir.Constant(_VECTOR, ir.Undefined), mask)
 
 
-def _define(function: Callable, emit: Callable) -> None:
+def _define(plain: Callable, in_place: Callable, instruction: Callable) -> None:
     """An operator of two lanes, by one instruction."""
+    for function in (plain, in_place):
 
-    @infer_global(function)
-    class _Typing(ConcreteTemplate):
-        cases = [signature(lanes, lanes, lanes)]
+        @infer_global(function)
+        class _Typing(ConcreteTemplate):
+            cases = [signature(lanes, lanes, lanes)]
 
-    @lower_builtin(function, lanes, lanes)
-    def _lowering(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
-        return emit(builder)(*args)
+        @lower_builtin(function, lanes, lanes)
+        def _lowering(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+            return instruction(builder)(*args)
 
 
-_define(operator.add, lambda builder: builder.fadd)
-_define(operator.sub, lambda builder: builder.fsub)
-_define(operator.mul, lambda builder: builder.fmul)
-_define(operator.truediv, lambda builder: builder.fdiv)
+_define(operator.add, operator.iadd, lambda builder: builder.fadd)
+_define(operator.sub, operator.isub, lambda builder: builder.fsub)
+_define(operator.mul, operator.imul, lambda builder: builder.fmul)
+_define(operator.truediv, operator.itruediv, lambda builder: builder.fdiv)
 
 
 @infer_global(operator.neg)
@@ -198,3 +199,32 @@ def with_lane(_context, value, lane, number):
         return builder.insert_element(args[0], args[2], args[1])
 
     return value(value, types.intp, types.float64), generate
+
+
+def _items(context: Any, builder: Any, kind: types.Type, table: Any, k: Any) -> Any:
+    """Pointer to eight numbers of a contiguous table from number k on, counted through its rows."""
+    array = context.make_array(kind)(context, builder, table)
+    return builder.bitcast(builder.gep(array.data, [k]), _VECTOR.as_pointer())
+
+
+@intrinsic
+def lanes_at(_context, table, k):
+    """Eight numbers of a contiguous table from number k on, counted through its rows."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        place = _items(context, builder, signature.args[0], *args)
+        return builder.load(place, align=_ALIGNMENT, typ=_VECTOR)
+
+    return lanes(table, types.intp), generate
+
+
+@intrinsic
+def put_lanes(_context, table, k, value):
+    """Write eight numbers of a contiguous table from number k on, counted through its rows."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        place = _items(context, builder, signature.args[0], *args[:2])
+        builder.store(args[2], place, align=_ALIGNMENT)
+        return context.get_dummy_value()
+
+    return types.void(table, types.intp, lanes), generate

@@ -11,7 +11,7 @@ with: a third of the time to compile.
 
 import numpy as np
 
-# Model (n + 2 + d + c rows, 42): bodies 0..n, fixtures, d rows of drag, c rows of coefficients.
+# Model (rows, 48): bodies 0..n, fixtures, then drag cylinders and coefficients, counted by item.
 # Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin
 INERTIA = np.int64(0)  # 21
 NET_WEIGHT = np.int64(21)  # m g - rho V g
@@ -25,35 +25,32 @@ ROTOR = np.int64(31)  # rotor inertia
 VISCOUS, COULOMB, WIDTH = np.arange(32, 35, dtype=np.int64)  # friction
 LOWER, UPPER, STIFFNESS, DISSIPATION = np.arange(35, 39, dtype=np.int64)  # end stops
 EFFORT = np.int64(39)  # greatest torque
-DRAG_BEGIN, DRAG_END = np.int64(40), np.int64(41)  # its rows of drag
+DRAG_BEGIN, DRAG_END = np.int64(40), np.int64(41)  # its drag cylinders
 
 # The hull, in row 0 instead
 HULL = np.int64(0)
 DAMPING, QUADRATIC = np.int64(25), np.int64(31)  # 6 each, body axes
 COS_TURN, SIN_TURN = np.int64(37), np.int64(38)  # hull frame in the body frame: Rz(turn)
 JOINTS = np.int64(39)  # n
-CROSS_FLOW, AXIAL = np.int64(40), np.int64(41)  # first rows of the drag coefficients
+CYLINDERS = np.int64(40)  # first item of the drag cylinders
+GROUPS, STRIPS = np.int64(41), np.int64(42)  # how many of eight cylinders; strips on each
+CROSS_FLOW, AXIAL = np.int64(43), np.int64(44)  # first items of the drag coefficients
 
 # Fixtures, in row n + 1
 TOOL_ROTATION, TOOL_POSITION = np.int64(0), np.int64(9)  # in the last link's frame
 ADDED_MASS = np.int64(12)  # 21: of the hull alone, about the body origin, body axes
 
-# Drag, one row for a cylinder or a part of it
+# Drag cylinders, in groups of eight: each of these numbers of all eight, then the next
 CENTER, AXIS = np.int64(0), np.int64(3)
 CROSS_REYNOLDS, AXIAL_REYNOLDS = np.int64(6), np.int64(7)  # Reynolds number of 1 m/s
 AXIAL_AREA = np.int64(8)  # 1/2 rho x wetted surface
-STRIPS = np.int64(9)  # how many follow
-STRIP = np.int64(10)  # pairs: place along the axis, 1/2 rho x diameter x length
-STRIPS_A_ROW = 16
+STRIP = np.int64(9)  # pairs: place along the axis, 1/2 rho x diameter x length
 
-# Coefficients of drag, one octave of Reynolds numbers to a row: pairs (a, b) of C(Re) = a + b Re in
-# each cell of `drag_table`; cell k is pair k % 16 of row k // 16
-CELL_BITS = np.uint64(4)
-CELLS_A_ROW = np.uint64(1) << CELL_BITS
+# Coefficients of drag: pairs (a, b) of C(Re) = a + b Re in the cells of `drag_table`
 
-MODEL_COLUMNS = np.int64(42)
+MODEL_COLUMNS = np.int64(48)
 
-# Workspace (n+1, 21), row i: of joint i and the link that it moves, in its frame
+# Workspace (rows, 21); after rows 0..n slots of the drag cylinders, see `drag`. Row i: of joint i and the link that it moves, in its frame
 COS, SIN = np.int64(0), np.int64(1)  # of the joint angle with its offset
 RATE = np.int64(2)  # of the joint; in the end its acceleration
 TORQUE = np.int64(3)  # of the joint; what is left of it for the joint's own acceleration

@@ -22,7 +22,7 @@ def mass_matrix(model, q):
     Composite-rigid-body algorithm (Featherstone 2008, sec. 6.2) with a general symmetric inertia.
     """
     n = q.shape[0]
-    work, matrix = make_workspace(n), np.empty((6 + n, 6 + n))
+    work, matrix = make_workspace(model), np.empty((6 + n, 6 + n))
     none = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     inertia = none + none + none + (0.0, 0.0, 0.0)
     for i in range(1, n + 1):

@@ -4,15 +4,19 @@ import numpy as np
 
 from uvms_dynamics.kernels.arithmetic import sine_cosine
 from uvms_dynamics.kernels.primitives import size
-from uvms_dynamics.kernels.drag import link_drag
+from uvms_dynamics.kernels.drag import SLOT_NUMBERS, meet_water
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.lanes import LANES
 from uvms_dynamics.kernels.layout import (
     COS,
     COS_TURN,
     DAMPING,
+    FORCE,
+    GROUPS,
     HULL,
     INERTIA,
+    JOINTS,
     OFFSET,
     QUADRATIC,
     SIN,
@@ -28,6 +32,7 @@ from uvms_dynamics.kernels.spatial import (
     motion_to_child,
     pair,
     plus,
+    store6,
     turned,
     weight,
 )
@@ -35,9 +40,10 @@ from uvms_dynamics.kernels.spatial import (
 
 
 @kernel
-def make_workspace(n):
-    """Scratch table (n+1, ..) of an arm of n joints; its contents do not outlive a call."""
-    return np.empty((n + 1, WORK_COLUMNS))
+def make_workspace(model):
+    """Scratch table (rows, 21) for a model; its contents do not outlive a call."""
+    slots = SLOT_NUMBERS * LANES * np.int64(model[HULL, GROUPS])
+    return np.zeros((np.int64(model[HULL, JOINTS]) + 1 - (-slots // WORK_COLUMNS), WORK_COLUMNS))
 
 
 @inner
@@ -95,9 +101,10 @@ def velocity_product(v, rate):
 
 
 @inner
-def link_bias_force(model, i, v, down):
-    """C(v) v less weight, buoyancy and drag of link i: the force that it needs besides I a."""
-    return minus(_unresisted(model, i, v, down), link_drag(model, i, v))
+def set_link_force(model, work, i, v, down, more):
+    """FORCE of link i: C(v) v less weight and buoyancy, and `more`; its drag follows."""
+    store6(work, i, FORCE, plus(_unresisted(model, i, v, down), more))
+    meet_water(model, work, i, v)
 
 
 @inner

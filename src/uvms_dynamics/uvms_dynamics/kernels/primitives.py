@@ -104,3 +104,26 @@ def two_to_the(_context, k):
         return builder.bitcast(builder.shl(bits, ir.Constant(whole, shift)), value.type)
 
     return _generic((k,), emit)
+
+
+@intrinsic
+def item(_context, table, k):
+    """Number k of a contiguous table, counted through its rows."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, args[0])
+        return builder.load(builder.gep(array.data, [args[1]]))
+
+    return types.float64(table, types.intp), generate
+
+
+@intrinsic
+def put_item(_context, table, k, number):
+    """Write number k of a contiguous table, counted through its rows."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, args[0])
+        builder.store(args[2], builder.gep(array.data, [args[1]]))
+        return context.get_dummy_value()
+
+    return types.void(table, types.intp, types.float64), generate
