@@ -33,6 +33,7 @@ setup(
         "uvms_observer",
         "uvms_planner",
     ],
+    extras_require={"panels": ["uvms_dynamics[panels]"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
+from uvms_bringup import added_mass
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.session import Session, prepare
@@ -20,6 +21,7 @@ EXAMPLES = """examples:
   uvms simulate hover --seed 3 --duration 20   the same loop in one process, without ROS
   uvms report runs/without_observer/run.mcap   figures and a page about a run
   uvms replay runs/without_observer/run.mcap --into controller
+  uvms added-mass spheroid:2.4,0.38            added mass of a shape or of a mesh file
 """
 
 
@@ -55,6 +57,7 @@ def parser() -> argparse.ArgumentParser:
         _add_run(commands, name, action, text)
     _add_replay(commands)
     _add_report(commands)
+    added_mass.add_command(commands)
     return top
 
 

@@ -23,6 +23,7 @@ setup(
         "PyYAML>=6",
         "scipy>=1.11",
     ],
+    extras_require={"panels": ["capytaine>=3.0", "trimesh>=4.0"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [

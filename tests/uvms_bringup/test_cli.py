@@ -165,7 +165,7 @@ def test_an_unstable_step_names_its_parameter(capsys):
     options = [word for setting in settings for word in ("--set", setting)]
     text = error_of(capsys, "simulate", "hover", *options)
     assert text.startswith("plant.step_s: 0.05 s is unstable with the stop_dissipation_s_rad of")
-    assert text.endswith("allowed: at most 0.0118 s")
+    assert text.endswith("allowed: at most 0.00785 s")
 
 
 @pytest.mark.parametrize("command", ["run", "simulate"])

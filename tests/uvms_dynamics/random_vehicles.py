@@ -48,23 +48,37 @@ def random_vehicle(seed: int, n: int, **changes) -> Vehicle:
     return changed(vehicle_from_data(data), **changes)
 
 
-def changed(vehicle: Vehicle, water: bool = True, drag: bool = True) -> Vehicle:
-    """The vehicle without water around it, or without all that dissipates."""
+def changed(
+    vehicle: Vehicle,
+    water: bool = True,
+    drag: bool = True,
+    gravity: bool = True,
+    neutral: bool = False,
+) -> Vehicle:
+    """The vehicle without water, all that dissipates, or gravity; or with neutral bodies."""
     data = vehicle.model_dump(mode="json")
     bodies = [data["hull"], *data["arm"]["links"]]
+    if not gravity:
+        data["environment"]["gravity_m_s2"] = 1e-30
+    if neutral:
+        for body in bodies:
+            body["volume_m3"] = body["mass_kg"] / data["environment"]["water_density_kg_m3"]
     if not water:
         data["environment"]["water_density_kg_m3"] = 1e-30
         for body in bodies:
             body["added_mass"] = [0.0] * 6
     if not (water and drag):
-        data["hull"].update(linear_damping=[0.0] * 6, quadratic_damping=[0.0] * 6)
-        for link in data["arm"]["links"]:
-            link["drag"] = []
-        for joint in data["arm"]["joints"]:
-            joint.update(
-                viscous_friction_nm_s=0.0, coulomb_friction_nm=0.0, stop_stiffness_nm_rad=0.0
-            )
+        _remove_drag(data)
     return vehicle_from_data(data)
+
+
+def _remove_drag(data: dict) -> None:
+    """And all friction and stops."""
+    data["hull"].update(linear_damping=[0.0] * 6, quadratic_damping=[0.0] * 6)
+    for link in data["arm"]["links"]:
+        link["drag"] = []
+    for joint in data["arm"]["joints"]:
+        joint.update(viscous_friction_nm_s=0.0, coulomb_friction_nm=0.0, stop_stiffness_nm_rad=0.0)
 
 
 def _mounting(rng: np.random.Generator) -> dict:

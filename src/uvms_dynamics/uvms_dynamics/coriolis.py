@@ -73,7 +73,8 @@ def _inverse(pose: Pose) -> Pose:
 
 def _to_inner_frame(offset: Array, turn: Array) -> Array:
     """Twist of the outer frame -> of the inner one (6, 6): [R^T, -[r]x R^T; 0, R^T]."""
-    matrix = np.kron(np.eye(2), turn)
+    matrix = np.zeros((6, 6))
+    matrix[:3, :3] = matrix[3:, 3:] = turn
     matrix[:3, 3:] = -skew(offset) @ turn
     return matrix
 

@@ -18,13 +18,13 @@ FIRST_OCTAVE, LAST_OCTAVE = -10, 23
 """The table covers Re = 2**FIRST_OCTAVE to 2**LAST_OCTAVE, 0.001 to 8 million; what is below has no
 drag to speak of, and no arm goes beyond."""
 
-CELLS = (LAST_OCTAVE - FIRST_OCTAVE) * PER_OCTAVE + 2
-"""Cells of the table; the first and the last one hold the constants below and above it."""
+CELLS = (LAST_OCTAVE - FIRST_OCTAVE) * PER_OCTAVE + 1
+"""Cells of the table; the last one holds the constant beyond it."""
 
 
 def resample(coefficient: DragCoefficient) -> tuple[Array, Array]:
     """Reynolds numbers (k,) and C_D (k,); constant beyond the file's ends."""
-    steps = np.arange(CELLS - 1)
+    steps = np.arange(CELLS)
     nodes = 2.0 ** (FIRST_OCTAVE + steps // PER_OCTAVE)
     nodes = nodes * (1.0 + (steps % PER_OCTAVE) / PER_OCTAVE)
     values = np.interp(np.log(nodes), np.log(coefficient.reynolds), coefficient.cd)
@@ -36,4 +36,4 @@ def cell_lines(coefficient: DragCoefficient) -> Array:
     nodes, values = resample(coefficient)
     slopes = np.diff(values) / np.diff(nodes)
     inside = np.column_stack([values[:-1] - slopes * nodes[:-1], slopes])
-    return np.vstack([[values[0], 0.0], inside, [values[-1], 0.0]])
+    return np.vstack([inside, [values[-1], 0.0]])

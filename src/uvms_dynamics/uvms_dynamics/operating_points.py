@@ -5,20 +5,24 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.integrator import JOINTS, VELOCITY
+from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.kernels import inverse_dynamics
+from uvms_dynamics.model import Model
 from uvms_dynamics.plant_config import PlantConfig, initial_state
 from uvms_dynamics.signals import Array
+from uvms_dynamics.stiffest_poses import joint_limits, stiffest_poses, stop_depths
 from uvms_dynamics.thrusters import thruster_matrix
 from uvms_dynamics.vehicle import Vehicle
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 _LINEAR = 3  # so many of them are translations
 
-_POSES = 6
-"""Arm poses, spread evenly over the joints' ranges, besides the stowed one and the start."""
-
 _FASTEST = np.array([10.0] * _LINEAR + [2.0 * np.pi] * _LINEAR)
 """Bound of the top speed, m/s and rad/s: no hull gets there that has next to no damping."""
+
+
+_ENTERING = 1e-2
+"""How deep a joint is that strikes its stop, as a part of how deep its drive presses it."""
 
 
 class Point(NamedTuple):
@@ -27,72 +31,69 @@ class Point(NamedTuple):
     name: str
     state: Array
     effort: Array
+    strikes: bool = False  # a stop that begins within a step
 
 
-def operating_points(vehicle: Vehicle, config: PlantConfig) -> Iterator[Point]:
-    """The start, rest in several poses, joints against their stops, and the greatest speeds."""
-    idle = np.zeros(vehicle.n_joints)
-    yield Point("at the start", initial_state(vehicle, config), idle)
-    stowed = np.radians(vehicle.arm.stowed_deg)
-    yield Point("at rest with the arm stowed", _state(vehicle, stowed), idle)
-    for q in _poses(vehicle):
-        where = ", ".join(f"{angle:.0f}" for angle in np.degrees(q))
-        yield Point(f"at rest with the joints at {where} degrees", _state(vehicle, q), idle)
-    yield from _against_the_stops(vehicle)
-    rates = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
-    yield Point("with the joints at their rate limits", _state(vehicle, stowed, rates), idle)
-    yield from _at_top_speed(vehicle, stowed)
+def operating_points(vehicle: Vehicle, model: Model, config: PlantConfig) -> Iterator[Point]:
+    """The start, rest in the stiffest pose, joints against their stops, and the greatest speeds.
 
-
-def _state(vehicle: Vehicle, q: Array, q_dot: Array | float = 0.0) -> Array:
-    """Level and at rest in the water."""
-    n = vehicle.n_joints
-    state = np.zeros(JOINTS + 2 * n + vehicle.n_thrusters)
-    state[VELOCITY - 1] = 1.0
-    state[JOINTS : JOINTS + n] = q
-    state[JOINTS + n : JOINTS + 2 * n] = q_dot
-    return state
-
-
-def _poses(vehicle: Vehicle) -> Array:
-    """Joint angles (_POSES, n): an additive recurrence, the same at every call.
-
-    Multiples of the square roots of primes fill the cube evenly (Weyl).
+    Where nothing else is said the vehicle moves as it does at the start: in a current, with it.
     """
+    start, stowed = initial_state(vehicle, config), np.radians(vehicle.arm.stowed_deg)
+    rates = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
+    stiffest = stiffest_poses(vehicle, model)
+    yield _held(model, "at the start", start, len(stowed))
+    yield _held(model, "with the arm stowed", with_joints(start, stowed), len(stowed))
+    yield _held(model, _pose_name(stiffest.rest), with_joints(start, stiffest.rest), len(stowed))
+    for q in stiffest.pressing:
+        yield _against_stops(vehicle, start, q, pressing=True)
+    for q in stiffest.striking:
+        yield _against_stops(vehicle, start, q, pressing=False)
+    moving = with_joints(start, stowed, rates)
+    yield _held(model, "with the joints at their rate limits", moving, len(stowed))
+    for name, state in _at_top_speed(vehicle, with_joints(start, stowed)):
+        yield _held(model, name, state, len(stowed))
+
+
+def with_joints(state: Array, q: Array, q_dot: Array | float = 0.0) -> Array:
+    """The state with other joint angles (n,) and rates."""
+    n, result = len(q), state.copy()
+    result[JOINTS : JOINTS + n] = q
+    result[JOINTS + n : JOINTS + 2 * n] = q_dot
+    return result
+
+
+def _pose_name(q: Array) -> str:
+    where = ", ".join(f"{angle:.0f}" for angle in np.degrees(q))
+    return f"with the joints at rest at {where} degrees"
+
+
+def _held(model: Model, name: str, state: Array, n: int) -> Point:
+    """The point with the torques that keep the joints at their rates but for friction."""
+    nu_r, q, q_dot = state[VELOCITY:JOINTS], state[JOINTS : JOINTS + n], state[JOINTS + n :][:n]
+    quaternion, still = state[QUATERNION:VELOCITY], np.zeros(n)
+    force = inverse_dynamics(model, quaternion, nu_r, np.zeros(6), q, q_dot, still)
+    return Point(name, state, force[6:])
+
+
+def _against_stops(vehicle: Vehicle, start: Array, q: Array, pressing: bool) -> Point:
+    """Those joints that a pose has at a limit, pressed by their drives or striking the stop."""
     joints = vehicle.arm.joints
-    lower = np.radians([joint.lower_deg for joint in joints])
-    upper = np.radians([joint.upper_deg for joint in joints])
-    step = np.sqrt(np.arange(2.0, 2.0 + len(joints))) + np.sqrt(5.0)
-    return lower + (np.outer(np.arange(1, _POSES + 1), step) % 1.0) * (upper - lower)
+    lower, upper = joint_limits(vehicle)
+    side = 1.0 * (q >= upper) - 1.0 * (q <= lower)
+    stopped = np.array([bool(joint.stop_stiffness_nm_rad) for joint in joints])
+    at_stop = [joint.name for joint, at in zip(joints, side, strict=True) if at]
+    names = "all joints" if len(at_stop) == len(joints) > 1 else ", ".join(at_stop)
+    depths = side * stop_depths(vehicle)
+    if pressing:
+        effort = side * stopped * np.array([joint.effort_limit_nm for joint in joints])
+        return Point(f"{names} pressed at effort_limit_nm", with_joints(start, q + depths), effort)
+    rates = side * np.radians([joint.rate_limit_deg_s for joint in joints])
+    state = with_joints(start, q + _ENTERING * depths, rates)
+    return Point(f"{names} striking at the rate limit", state, np.zeros(len(q)), strikes=True)
 
 
-def _against_the_stops(vehicle: Vehicle) -> Iterator[Point]:
-    """All joints pressed by their drives, and driven in at their rate limits, at either end."""
-    for sign, end in ((1.0, "upper"), (-1.0, "lower")):
-        effort = sign * np.array(
-            [j.effort_limit_nm if j.stop_stiffness_nm_rad else 0.0 for j in vehicle.arm.joints]
-        )
-        limit = np.radians([getattr(joint, f"{end}_deg") for joint in vehicle.arm.joints])
-        q = limit + sign * stop_depths(vehicle)
-        rates = sign * np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
-        name = f"the joints against their {end} stops"
-        yield Point(f"pressing {name} at effort_limit_nm", _state(vehicle, q), effort)
-        yield Point(f"driving {name} at their rate limits", _state(vehicle, q, rates), effort)
-
-
-def stop_depths(vehicle: Vehicle) -> Array:
-    """How far (n,) each drive presses its joint into a stop at rest, rad; 0 where none is."""
-    return np.array(
-        [
-            joint.effort_limit_nm / joint.stop_stiffness_nm_rad
-            if joint.stop_stiffness_nm_rad
-            else 0.0
-            for joint in vehicle.arm.joints
-        ]
-    )
-
-
-def _at_top_speed(vehicle: Vehicle, q: Array) -> Iterator[Point]:
+def _at_top_speed(vehicle: Vehicle, rest: Array) -> Iterator[tuple[str, Array]]:
     """Through the water along each axis as fast as all thrusters push the hull alone."""
     hull = vehicle.hull
     limits = [thruster.limit_n for thruster in vehicle.thrusters]
@@ -101,10 +102,11 @@ def _at_top_speed(vehicle: Vehicle, q: Array) -> Iterator[Point]:
         speed = _terminal_speed(push[k], hull.linear_damping[k], hull.quadratic_damping[k])
         if not speed:
             continue
-        state = _state(vehicle, q)
+        state = rest.copy()
+        state[VELOCITY:JOINTS] = 0.0
         state[VELOCITY + k] = speed = min(speed, _FASTEST[k])
         unit = "m/s" if k < _LINEAR else "rad/s"
-        yield Point(f"at {speed:.3g} {unit} of {axis}", state, np.zeros(len(q)))
+        yield f"at {speed:.3g} {unit} of {axis}", state
 
 
 def _terminal_speed(force: float, linear: float, quadratic: float) -> float:

@@ -36,6 +36,8 @@ def mass_matrix(model, q):
     for k in range(6):
         force = times(inertia, into_hull(model, load6(unit, k, 0)))
         _set_hull_columns(model, matrix, k, force)
+        for j in range(k):  # symmetric to the last bit
+            matrix[k, j] = matrix[j, k]
     return matrix
 
 

@@ -1,0 +1,233 @@
+"""The command `uvms added-mass`: the added mass of a body, ready for the vehicle file."""
+
+import argparse
+import math
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from typing import Any
+
+import numpy as np
+from rich.console import Console
+from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+
+from uvms_dynamics import load_vehicle
+from uvms_dynamics.panel_method import (
+    AddedMassEstimate,
+    Body,
+    PanelMethodError,
+    added_mass_yaml,
+    estimate,
+    mesh_body,
+    pose_of,
+    shape_body,
+    vehicle_body,
+)
+from uvms_dynamics.panel_method.bodies import MOST_HALVED, PANELS, SEA_WATER
+from uvms_dynamics.panel_method.panels import LONG, longest_edge, mean_edge
+from uvms_dynamics.panel_method.solids import WORDS
+from uvms_dynamics.panel_method.solver import memory_needed
+from uvms_dynamics.signals import Array
+
+SHAPES = "  ".join(f"{word}:{sizes}" for word, sizes in WORDS.items())
+DESCRIPTION = f"""\
+6x6 added mass of a hull or link in unbounded water, by the panel method (capytaine).
+BODY is one of
+  a mesh file (.stl .obj .ply .off .glb .gdf ...): one closed surface in metres, normals outwards
+  a shape, its length along x, in metres: {SHAPES}
+  with --vehicle FILE: hull, or the name of a link, where the file has a shape for it
+The output is YAML: the entry `added_mass` of the vehicle file, with comments on how sure it is."""
+EXAMPLES = """examples:
+  uvms added-mass spheroid:2.4,0.38
+  uvms added-mass hull.stl --scale 0.001 --rpy 180,0,0 > added_mass.yaml    mm, z upwards
+  uvms added-mass link.obj --about=-0.23,0,0 --density 1000
+  uvms added-mass forearm --vehicle my_auv.yaml
+
+More: docs/added-mass.md"""
+TERMS = ("X", "Y", "Z", "K", "M", "N")
+
+
+def add_command(commands: Any) -> None:
+    """Put `added-mass` among the commands."""
+    command = commands.add_parser(
+        "added-mass",
+        help="added mass of a mesh or shape, ready for the vehicle file",
+        description=DESCRIPTION,
+        epilog=EXAMPLES,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+    )
+    command.set_defaults(do=added_mass)
+    add = command.add_argument
+    add("body", metavar="BODY", help="mesh file, shape:SIZES, or part of --vehicle")
+    add("--vehicle", metavar="FILE", help="vehicle file whose hull or link BODY names")
+    add("--scale", type=float, metavar="M", help="unit of the mesh file in metres (mm: 0.001)")
+    add("--flip", action="store_true", help="turn the mesh's normals round")
+    add(
+        "--about",
+        type=_vector,
+        metavar="X,Y,Z",
+        help="origin of the body frame in the file's frame, m, after scaling (default 0,0,0);"
+        " write --about=-0.1,0,0 where the first is negative",
+    )
+    add(
+        "--rpy",
+        type=_vector,
+        metavar="R,P,Y",
+        help="attitude of the file's axes in the body frame, degrees (default 0,0,0; 180,0,0 turns"
+        " forward-port-up into forward-starboard-down)",
+    )
+    add(
+        "--density",
+        type=float,
+        metavar="RHO",
+        help=f"of the water, kg/m^3 (default: the vehicle's, or {SEA_WATER:g})",
+    )
+    add(
+        "--panels",
+        type=int,
+        default=PANELS,
+        metavar="N",
+        help=f"of the finest surface (default {PANELS}; a mesh file that has more than a quarter"
+        f" of it is halved up to {MOST_HALVED}, or to N if that is more)",
+    )
+
+
+def added_mass(options: argparse.Namespace) -> int:
+    """`uvms added-mass`."""
+    body = _body(options)
+    with _progress(body) as progress:
+        found = estimate(body.levels, body.density, progress)
+    print("\n".join(f"# {line}".rstrip() for line in _report(body, found)))
+    print(added_mass_yaml(found.matrix))
+    return 0
+
+
+def _body(options: argparse.Namespace) -> Body:
+    name, is_shape = options.body, options.body.partition(":")[0] in WORDS
+    of_files = {"--scale": options.scale is not None, "--flip": options.flip}
+    of_frames = {"--about": options.about is not None, "--rpy": options.rpy is not None}
+    if options.vehicle is not None:
+        own = {**of_files, **of_frames, "--density": options.density is not None}
+        _refuse(own, f"part {name} of a vehicle file, which says all that itself")
+        return vehicle_body(load_vehicle(options.vehicle), name, options.panels)
+    density = SEA_WATER if options.density is None else options.density
+    zero = np.zeros(3)
+    pose = pose_of(
+        zero if options.about is None else options.about,
+        zero if options.rpy is None else options.rpy,
+    )
+    if is_shape or ":" in name:
+        _refuse(of_files, f"shape {name}")
+        return shape_body(name, pose, density, options.panels)
+    if name == "hull":
+        raise PanelMethodError("'hull' is a part of a vehicle file: say which with --vehicle FILE")
+    return mesh_body(name, pose, density, options.panels, options.scale, options.flip)
+
+
+def _refuse(given: dict[str, bool], what: str) -> None:
+    if idle := [option for option, is_given in given.items() if is_given]:
+        raise PanelMethodError(f"{' and '.join(idle)}: not for {what}")
+
+
+def _vector(text: str) -> Array:
+    try:
+        numbers = [float(part) for part in text.split(",")]
+    except ValueError:
+        numbers = []
+    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
+        raise argparse.ArgumentTypeError(f"{text!r} must be three numbers, as in 0.1,0,0")
+    return np.array(numbers)
+
+
+def _report(body: Body, found: AddedMassEstimate) -> list[str]:
+    """What the reader should know of the numbers."""
+    finest = body.levels[-1]
+    middle = ", ".join(f"{value:.4g}" for value in _clean(finest.centroid(), finest.size))
+    lines = [
+        f"Added mass of {body.name}, potential flow in unbounded water of {body.density:g} kg/m^3",
+        "order X Y Z K M N about the frame's origin, written positive: kg, kg m, kg m^2",
+        f"volume {found.volume:.6g} m^3 ({body.density * found.volume:.5g} kg of water),"
+        f" its centre {middle} m, length {finest.size:.4g} m",
+        "",
+        f"{'':>20}" + "".join(f"{term:>11}" for term in TERMS),
+    ]
+    lines += [_row(f"{count} panels", np.diag(matrix)) for count, matrix in found.solved]
+    if found.change is not None:
+        lines += [_row("extrapolated", np.diag(found.matrix))]
+        lines += [_row("  change, %", 100.0 * found.change)]
+    for name, matrix in body.rows.items():
+        short, _, kind = name.partition(",")
+        lines += [_row(short, np.diag(matrix)) + kind]
+    return [*lines, "", *_remarks(found), *_long_edges(body)]
+
+
+def _long_edges(body: Body) -> list[str]:
+    triangles = body.levels[0].triangles()
+    longest, mean = longest_edge(triangles), mean_edge(triangles)
+    if not body.is_mesh or longest < 2.0 * LONG * mean:
+        return []
+    return [
+        f"some panels are long and thin: an edge of {longest:.2g} m where {mean:.2g} m is usual;",
+        "a mesh of compact triangles, or a larger --panels, is surer",
+    ]
+
+
+def _remarks(found: AddedMassEstimate) -> list[str]:
+    lines = [f"asymmetry before it was made symmetric: {found.asymmetry:.1e} of the largest entry"]
+    if found.change is None:
+        count = 4 * found.solved[-1][0]
+        lines += [
+            f"convergence: not estimated; --panels {count} would do it"
+            f" ({_gigabytes(count)}), or a coarser mesh"
+        ]
+    else:
+        worst = int(found.change.argmax())
+        lines += [
+            f"convergence: extrapolation changes {TERMS[worst]} most, by"
+            f" {100.0 * found.change[worst]:.2g} %;",
+            "what is left is a part of that for a smooth body, up to twice that with sharp edges",
+        ]
+    if found.clipped > 1e-6:
+        lines += [f"a negative eigenvalue, {found.clipped:.1e} of the largest, was set to zero"]
+    return lines
+
+
+def _gigabytes(count: int) -> str:
+    return f"{memory_needed(count) / 1e9:.1g} GB of memory"
+
+
+def _row(name: str, values: Array) -> str:
+    size = float(np.abs(values).max())
+    return f"{name:>20}" + "".join(f"{value:11.5g}" for value in _clean(values, size))
+
+
+def _clean(values: Array, size: float) -> Array:
+    """Rounding noise as the zero it is."""
+    return np.where(np.abs(values) < 1e-8 * size, 0.0, values)
+
+
+@contextmanager
+def _progress(body: Body) -> Iterator[Any]:
+    """What is being solved, on stderr: a line on a terminal, a line per surface elsewhere."""
+    counts = iter([panels.count for panels in body.levels])
+    text = ""
+    with Progress(
+        SpinnerColumn(),
+        TextColumn("{task.description}"),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=not sys.stderr.isatty(),
+    ) as bar:
+        task = bar.add_task("")
+
+        def show(done: int, total: int) -> None:
+            nonlocal text
+            if done == 0:
+                count = next(counts)
+                text = f"{count} panels, up to {_gigabytes(count)}"
+                if not sys.stderr.isatty():
+                    print(text, file=sys.stderr, flush=True)
+            bar.update(task, description=f"{text}: motion {done + 1} of {total}")
+
+        yield show
