@@ -16,6 +16,7 @@ from uvms_dynamics import (
     end_effector,
     end_effector_jacobian,
     inverse_dynamics,
+    load_vehicle,
     mass_matrix,
     quat_multiply,
     quat_to_matrix,
