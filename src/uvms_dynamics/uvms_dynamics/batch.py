@@ -23,7 +23,11 @@ def advance_batch(
     than half the time that they take one by one. Raises ConfigError for shapes that do not fit.
     """
     n, m = effort.shape[-1], len(system.thrusters)
-    wanted = {"x": (len(x), state_size(system)), "thrust_command": (len(x), m), "effort": (len(x), n)}
+    wanted = {
+        "x": (len(x), state_size(system)),
+        "thrust_command": (len(x), m),
+        "effort": (len(x), n),
+    }
     arrays = {"x": x, "thrust_command": thrust_command, "effort": effort}
     for name, shape in wanted.items():
         if arrays[name].shape != shape:
@@ -49,9 +53,7 @@ def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, 
         _take(thrust_command, first, lanes_thrust)
         _take(effort, first, lanes_effort)
         for _ in range(steps):
-            derivative(
-                model, thrusters, current, n, m, state, thrust, torque, work, stage, _FIRST
-            )
+            derivative(model, thrusters, current, n, m, state, thrust, torque, work, stage, _FIRST)
             finish_step(
                 model, thrusters, current, n, m, state, thrust, torque, step, work, stage, trial
             )

@@ -92,7 +92,10 @@ def cylinder_drag(
     skin friction along it, f = -1/2 rho C_f(Re) S |v_a| v_a, by the cylinder's length and side.
     """
     axis, diameter = np.array(cylinder.axis), 2.0 * cylinder.radius_m
-    pressure, viscosity = 0.5 * environment.water_density_kg_m3, environment.kinematic_viscosity_m2_s
+    pressure, viscosity = (
+        0.5 * environment.water_density_kg_m3,
+        environment.kinematic_viscosity_m2_s,
+    )
     nodes, weights = np.polynomial.legendre.leggauss(cylinder.stations)
     total = np.zeros(6)
     for node, weight in zip(nodes, weights, strict=True):
@@ -106,7 +109,9 @@ def cylinder_drag(
     center = np.array(cylinder.center_m)
     speed = float(axis @ (nu_r[:3] + np.cross(nu_r[3:], center)))
     c_f = np.interp(abs(speed) * cylinder.length_m / viscosity, *resample(along))
-    return total + _at(center, -pressure * c_f * cylinder_surface(cylinder) * abs(speed) * speed * axis)
+    return total + _at(
+        center, -pressure * c_f * cylinder_surface(cylinder) * abs(speed) * speed * axis
+    )
 
 
 def _at(place: Array, force: Array) -> Array:

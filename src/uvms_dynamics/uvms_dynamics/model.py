@@ -151,9 +151,7 @@ def _put(row: Array, column: int, values) -> None:
 def _packed(inertia: Array) -> Array:
     """The 21 numbers of a symmetric 6x6 matrix, in the order of the layout."""
     upper = np.triu_indices(3)
-    return np.concatenate(
-        [inertia[:3, :3][upper], inertia[:3, 3:].ravel(), inertia[3:, 3:][upper]]
-    )
+    return np.concatenate([inertia[:3, :3][upper], inertia[:3, 3:].ravel(), inertia[3:, 3:][upper]])
 
 
 def _moved(inertia: Array, pose: Pose) -> Array:

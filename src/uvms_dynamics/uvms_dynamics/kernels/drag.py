@@ -170,7 +170,10 @@ def _cylinder_drag(model, block, strips, lane, v):
 def _strip_sums(model, block, strips, lane, u, turn):
     """Sums of k, s k and s^2 k over the strips at s, each of which resists with -k (u + s turn)."""
     slip, mixed, spin = _dot(u, u), 2.0 * _dot(u, turn), _dot(turn, turn)
-    first, per_speed = np.int64(model[HULL, CROSS_FLOW]), _number(model, block, CROSS_REYNOLDS, lane)
+    first, per_speed = (
+        np.int64(model[HULL, CROSS_FLOW]),
+        _number(model, block, CROSS_REYNOLDS, lane),
+    )
     sum0, sum1, sum2 = zero_like(u[0]), zero_like(u[0]), zero_like(u[0])
     for strip in range(strips):
         s = _number(model, block, STRIP + 2 * strip, lane)

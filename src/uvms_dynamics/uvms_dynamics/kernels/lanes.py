@@ -104,7 +104,9 @@ class _LaneArrayModel(models.StructModel):
 
 def _view(dimensions: int) -> Callable:
     def typed(_context: Any, array: types.Type) -> Any:
-        if not (isinstance(array, types.Array) and array.ndim == dimensions + 1 and array.is_c_contig):
+        if not (
+            isinstance(array, types.Array) and array.ndim == dimensions + 1 and array.is_c_contig
+        ):
             return None
 
         def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:

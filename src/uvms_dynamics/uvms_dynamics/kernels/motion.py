@@ -38,7 +38,6 @@ from uvms_dynamics.kernels.spatial import (
 )
 
 
-
 @kernel
 def make_workspace(model):
     """Scratch table (rows, 21) for a model; its contents do not outlive a call."""

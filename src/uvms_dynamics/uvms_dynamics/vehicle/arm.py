@@ -116,6 +116,8 @@ class DragCoefficient(Part):
         pairs = zip(self.reynolds, self.reynolds[1:], strict=False)
         if self.reynolds[0] <= 0.0 or not all(low < high for low, high in pairs):
             raise ValueError("reynolds must be > 0 and increasing")
+        if self.reynolds[-1] > 1e9:
+            raise ValueError(f"reynolds must be at most 1e9; the last is {self.reynolds[-1]:g}")
         if min(self.cd) < 0.0:
             raise ValueError("every cd must be >= 0")
         return self
