@@ -2,6 +2,7 @@
 
 from uvms_dynamics import compile_cache  # first: it says where numba keeps what it compiles
 from uvms_dynamics.batch import advance_batch
+from uvms_dynamics.integrator import System
 from uvms_dynamics.kernels import (
     coupling_wrench,
     end_effector,
@@ -13,7 +14,6 @@ from uvms_dynamics.kernels import (
     mass_matrix,
     restoring_wrench,
 )
-from uvms_dynamics.integrator import System
 from uvms_dynamics.model import Model, build_model
 from uvms_dynamics.plant import Plant, PlantConfig, PlantTruth, SensorFrame
 from uvms_dynamics.rng import generator

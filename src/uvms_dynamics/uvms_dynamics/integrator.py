@@ -9,7 +9,6 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.kernels.primitives import root
 from uvms_dynamics.kernels.forward import accelerate
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.joints import passive_torque
@@ -20,6 +19,7 @@ from uvms_dynamics.kernels.motion import (
     make_workspace,
     set_angle,
 )
+from uvms_dynamics.kernels.primitives import root
 from uvms_dynamics.kernels.spatial import load6, plus, store6
 from uvms_dynamics.model import Model
 from uvms_dynamics.signals import Array

@@ -7,7 +7,6 @@ from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Vehicle
 
-
 Thrusters = Array
 """Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, time constant and
 slew limit."""

@@ -50,7 +50,7 @@ def sine_cosine(x):
 
 @inner
 def hyperbolic_tangent(x):
-    """tanh x = -E / (2 + E) with E = exp(-2 |x|) - 1, and the sign of x."""
+    """Tanh x = -E / (2 + E) with E = exp(-2 |x|) - 1, and the sign of x."""
     y = -2.0 * smaller(size(x), _TANH_IS_ONE)
     k = (y * (1.0 / math.log(2.0)) + ROUND) - ROUND
     r = (y - k * _LN2_HIGH) - k * _LN2_LOW

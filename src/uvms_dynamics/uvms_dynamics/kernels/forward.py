@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.primitives import zero_like
 from uvms_dynamics.kernels.drag import resist
 from uvms_dynamics.kernels.inertia import (
     axis_force,
@@ -36,6 +35,7 @@ from uvms_dynamics.kernels.motion import (
     to_hull,
     velocity_product,
 )
+from uvms_dynamics.kernels.primitives import zero_like
 from uvms_dynamics.kernels.spatial import (
     force_to_parent,
     linear,

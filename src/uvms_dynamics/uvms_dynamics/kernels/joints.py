@@ -3,7 +3,6 @@
 import numpy as np
 
 from uvms_dynamics.kernels.arithmetic import hyperbolic_tangent
-from uvms_dynamics.kernels.primitives import larger
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     COULOMB,
@@ -14,6 +13,7 @@ from uvms_dynamics.kernels.layout import (
     VISCOUS,
     WIDTH,
 )
+from uvms_dynamics.kernels.primitives import larger
 
 
 @kernel

@@ -3,7 +3,6 @@
 import numpy as np
 
 from uvms_dynamics.kernels.arithmetic import sine_cosine
-from uvms_dynamics.kernels.primitives import size
 from uvms_dynamics.kernels.drag import SLOT_NUMBERS, meet_water
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
@@ -23,6 +22,7 @@ from uvms_dynamics.kernels.layout import (
     SIN_TURN,
     WORK_COLUMNS,
 )
+from uvms_dynamics.kernels.primitives import size
 from uvms_dynamics.kernels.spatial import (
     angular,
     gyroscopic,
