@@ -24,7 +24,7 @@ STEPS = 50
 @njit(cache=True)
 def _forward_all(model, quat, nu, q, q_dot, tau, out):
     """Forward dynamics of every motion; one workspace for all."""
-    work = make_workspace(q.shape[1])
+    work = make_workspace(model)
     for i in range(quat.shape[0]):
         forward_dynamics_into(model, quat[i], nu[i], q[i], q_dot[i], tau[i], work, out[i])
 
@@ -48,7 +48,7 @@ def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[]
     system = System(build_model(vehicle), build_thrusters(vehicle), np.array([0.2, -0.1, 0.0]))
     start = np.concatenate([np.zeros(3), motion.quat, motion.nu, motion.q, motion.q_dot])
     start = np.concatenate([start, np.zeros(m)])
-    scratch, thrust, effort = make_scratch(n, m), np.full(m, 2.0), motion.tau[6:].copy()
+    scratch, thrust, effort = make_scratch(system), np.full(m, 2.0), motion.tau[6:].copy()
     states, rates = np.empty((2, steps + 1, len(start)))
     state = start.copy()
 

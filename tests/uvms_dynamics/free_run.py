@@ -27,7 +27,7 @@ class FreeRun:
         """States (k+1, nx) at every step, under constant thrust and effort."""
         steps = round(duration / step)
         x, states = self.state.copy(), np.empty((steps + 1, len(self.state)))
-        scratch = make_scratch(self.n, self.vehicle.n_thrusters)
+        scratch = make_scratch(self.system)
         rates = np.empty_like(states)
         advance(self.system, x, self.thrust, self.effort, step, scratch, states, rates)
         return states

@@ -153,7 +153,20 @@ def cylinder_drag(vehicle, cylinder, twist):
         r = np.add(cylinder.center_m, 0.5 * cylinder.length_m * node * np.array(cylinder.axis))
         force = width * line_drag(vehicle, cylinder, twist[:3] + np.cross(twist[3:], r))
         total += np.concatenate([force, np.cross(r, force)])
-    return total
+    r = np.array(cylinder.center_m)
+    force = side_friction(vehicle, cylinder, twist[:3] + np.cross(twist[3:], r))
+    return total + np.concatenate([force, np.cross(r, force)])
+
+
+def side_friction(vehicle, cylinder, velocity):
+    """Friction (3,) along the axis on the side of a whole cylinder, N."""
+    water, axis, length = vehicle.environment, np.array(cylinder.axis), cylinder.length_m
+    speed = axis @ velocity
+    c_f = drag_coefficient(
+        vehicle.arm.friction_coefficient, abs(speed) * length / water.kinematic_viscosity_m2_s
+    )
+    side = np.pi * 2.0 * cylinder.radius_m * length
+    return -0.5 * water.water_density_kg_m3 * c_f * side * speed**2 * np.sign(speed) * axis
 
 
 def line_drag(vehicle, cylinder, velocity):

@@ -16,6 +16,7 @@ from uvms_dynamics import (
     end_effector,
     end_effector_jacobian,
     inverse_dynamics,
+    load_vehicle,
     mass_matrix,
     quat_multiply,
     quat_to_matrix,
@@ -26,6 +27,9 @@ from uvms_dynamics import (
 )
 
 MODEL = build_model(REFERENCE)
+SLIPPERY = build_model(
+    load_vehicle(overrides={f"arm.links.{i}.drag": [] for i in range(REFERENCE.n_joints)})
+)
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
@@ -142,8 +146,7 @@ def test_main_thruster_drives_it_at_2_1_metres_a_second():
     q = np.radians(REFERENCE.arm.stowed_deg)
     nu = np.array([2.1, 0.0, 0.0, 0.0, 0.0, 0.0])
     at_rest = np.zeros(4)
-    hull_only = MODEL._replace(drag_coefficient=np.zeros_like(MODEL.drag_coefficient))
-    force = inverse_dynamics(hull_only, LEVEL, nu, np.zeros(6), q, at_rest, at_rest)
+    force = inverse_dynamics(SLIPPERY, LEVEL, nu, np.zeros(6), q, at_rest, at_rest)
     assert force[0] == pytest.approx(98.0, rel=0.02)
 
 
@@ -206,8 +209,7 @@ def test_uncontrolled_swing_of_the_arm():
     assert yaw[-1] == pytest.approx(-10.9, abs=0.2)
 
     # Inertia and added mass are what the design's 0.7 N and 0.75 N m say; drag comes on top.
-    inviscid = MODEL._replace(drag_coefficient=np.zeros_like(MODEL.drag_coefficient))
-    inertial = np.array([coupling_wrench(inviscid, *motion) for motion in motions])
+    inertial = np.array([coupling_wrench(SLIPPERY, *motion) for motion in motions])
     assert np.abs(inertial[:, :3]).max() == pytest.approx(0.70, abs=0.03)
     assert np.abs(inertial[:, 3:]).max() == pytest.approx(0.75, abs=0.03)
     whole = np.array([coupling_wrench(MODEL, *motion) for motion in motions])

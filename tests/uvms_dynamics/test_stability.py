@@ -34,7 +34,7 @@ def run(system, point, start, step, steps):
     """States (steps+1, nx) from a start under the point's own commands."""
     n = len(point.effort)
     thrust, states = point.state[JOINTS + 2 * n :].copy(), np.empty((steps + 1, len(start)))
-    scratch = make_scratch(n, len(thrust))
+    scratch = make_scratch(system)
     x, rates = start.copy(), np.empty_like(states)
     advance(system, x, thrust, point.effort, step, scratch, states, rates)
     return states
@@ -65,10 +65,7 @@ def gain(vehicle, config, bound, part):
 
 
 def rates_at(system, point, x):
-    scratch, row = (
-        make_scratch(len(point.effort), len(system.thrusters.limit)),
-        np.empty((1, len(x))),
-    )
+    scratch, row = make_scratch(system), np.empty((1, len(x)))
     rates, thrust = np.empty((1, len(x))), point.state[JOINTS + 2 * len(point.effort) :].copy()
     advance(system, x.copy(), thrust, point.effort, 0.0, scratch, row, rates)
     return rates[0]
@@ -261,7 +258,7 @@ WILD = {
 def fastest_joint(vehicle, config, step, seconds=5.0):
     """Greatest joint rate under full torque and thrust, one way or the other at random."""
     system, x, rng = system_of(vehicle, config), initial_state(vehicle, config), RNG(1)
-    scratch, rates = make_scratch(vehicle.n_joints, vehicle.n_thrusters), []
+    scratch, rates = make_scratch(system), []
     torque = np.array([joint.effort_limit_nm for joint in vehicle.arm.joints])
     force = np.array([thruster.limit_n for thruster in vehicle.thrusters])
     states = np.empty((max(1, round(0.5 / step)) + 1, len(x)))

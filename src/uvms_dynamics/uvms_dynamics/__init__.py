@@ -1,6 +1,8 @@
 """Vehicle, kinematics, dynamics, thrusters, sensors and plant of the vehicle-manipulator system."""
 
 from uvms_dynamics import compile_cache  # first: it says where numba keeps what it compiles
+from uvms_dynamics.batch import advance_batch
+from uvms_dynamics.integrator import System
 from uvms_dynamics.kernels import (
     coupling_wrench,
     end_effector,
@@ -27,7 +29,7 @@ from uvms_dynamics.rotations import (
     rpy_to_quat,
     skew,
 )
-from uvms_dynamics.thrusters import thruster_matrix
+from uvms_dynamics.thrusters import build_thrusters, thruster_matrix
 from uvms_dynamics.vehicle import Vehicle, dump_vehicle, load_vehicle
 
 __all__ = [
@@ -36,8 +38,11 @@ __all__ = [
     "PlantConfig",
     "PlantTruth",
     "SensorFrame",
+    "System",
     "Vehicle",
+    "advance_batch",
     "build_model",
+    "build_thrusters",
     "compile_cache",
     "coupling_wrench",
     "dump_vehicle",

@@ -12,6 +12,7 @@ from uvms_dynamics.drag_table import resample
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Environment, Hull, Link
 from uvms_dynamics.vehicle.arm import DragCoefficient, DragCylinder
+from uvms_dynamics.vehicle.shapes import cylinder_surface
 
 
 class Motion(NamedTuple):
@@ -78,25 +79,41 @@ def hull_damping(hull: Hull, nu_r: Array) -> Array:
     return (np.array(hull.linear_damping) + np.array(hull.quadratic_damping) * abs(nu_r)) * nu_r
 
 
-def cross_flow_drag(
-    cylinders: tuple[DragCylinder, ...],
-    coefficient: DragCoefficient,
+def cylinder_drag(
+    cylinder: DragCylinder,
+    across: DragCoefficient,
+    along: DragCoefficient,
     nu_r: Array,
     environment: Environment,
 ) -> Array:
-    """Drag ON a link by strips: df = -1/2 rho C_D(Re) D |v_n| v_n dl, v_n across the axis."""
-    reynolds, cd = resample(coefficient)
+    """Drag ON a link (6,) by one cylinder, about the link's origin.
+
+    Across the axis by strips, df = -1/2 rho C_D(Re) D |v_n| v_n dl with each strip's own Re, and
+    skin friction along it, f = -1/2 rho C_f(Re) S |v_a| v_a, by the cylinder's length and side.
+    """
+    axis, diameter = np.array(cylinder.axis), 2.0 * cylinder.radius_m
+    pressure, viscosity = (
+        0.5 * environment.water_density_kg_m3,
+        environment.kinematic_viscosity_m2_s,
+    )
+    nodes, weights = np.polynomial.legendre.leggauss(cylinder.stations)
     total = np.zeros(6)
-    for cylinder in cylinders:
-        axis, diameter = np.array(cylinder.axis), 2.0 * cylinder.radius_m
-        nodes, weights = np.polynomial.legendre.leggauss(cylinder.stations)
-        for node, weight in zip(nodes, weights, strict=True):
-            place = np.array(cylinder.center_m) + 0.5 * cylinder.length_m * node * axis
-            velocity = nu_r[:3] + np.cross(nu_r[3:], place)
-            across = velocity - axis * (axis @ velocity)
-            speed = float(np.linalg.norm(across))
-            c_d = np.interp(speed * diameter / environment.kinematic_viscosity_m2_s, reynolds, cd)
-            area = diameter * 0.5 * cylinder.length_m * weight
-            force = -0.5 * environment.water_density_kg_m3 * c_d * area * speed * across
-            total += np.concatenate([force, np.cross(place, force)])
-    return total
+    for node, weight in zip(nodes, weights, strict=True):
+        place = np.array(cylinder.center_m) + 0.5 * cylinder.length_m * node * axis
+        velocity = nu_r[:3] + np.cross(nu_r[3:], place)
+        velocity -= axis * (axis @ velocity)
+        speed = float(np.linalg.norm(velocity))
+        area = diameter * 0.5 * cylinder.length_m * weight
+        c_d = np.interp(speed * diameter / viscosity, *resample(across))
+        total += _at(place, -pressure * c_d * area * speed * velocity)
+    center = np.array(cylinder.center_m)
+    speed = float(axis @ (nu_r[:3] + np.cross(nu_r[3:], center)))
+    c_f = np.interp(abs(speed) * cylinder.length_m / viscosity, *resample(along))
+    return total + _at(
+        center, -pressure * c_f * cylinder_surface(cylinder) * abs(speed) * speed * axis
+    )
+
+
+def _at(place: Array, force: Array) -> Array:
+    """A force that acts at a place, as a wrench (6,)."""
+    return np.concatenate([force, np.cross(place, force)])

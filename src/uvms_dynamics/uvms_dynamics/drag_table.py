@@ -1,7 +1,5 @@
 """The drag coefficient, resampled so that numba kernels look it up without logarithm or search."""
 
-import math
-
 import numpy as np
 
 from uvms_dynamics.signals import Array
@@ -16,15 +14,26 @@ the file's table, linear in ln Re, the resampled one is off by less than 0.1 per
 3 per cent in a cell that bridges a sharp corner such as the drag crisis.
 """
 
-FIRST_OCTAVE = -10
-"""The table begins at Re = 2**FIRST_OCTAVE; below it a strip's drag is nothing to speak of."""
+FIRST_OCTAVE, LAST_OCTAVE = -10, 30
+"""The table covers Re = 2**FIRST_OCTAVE to 2**LAST_OCTAVE, 0.001 to 1.07e9; what is below has no drag
+to speak of, and no file goes beyond."""
+
+CELLS = (LAST_OCTAVE - FIRST_OCTAVE) * PER_OCTAVE + 1
+"""Cells of the table; the last one holds the constant beyond it."""
 
 
 def resample(coefficient: DragCoefficient) -> tuple[Array, Array]:
     """Reynolds numbers (k,) and C_D (k,); constant beyond the file's ends."""
-    last = max(math.ceil(math.log2(coefficient.reynolds[-1])), FIRST_OCTAVE + 1)
-    steps = np.arange((last - FIRST_OCTAVE) * PER_OCTAVE + 1)
+    steps = np.arange(CELLS)
     nodes = 2.0 ** (FIRST_OCTAVE + steps // PER_OCTAVE)
     nodes = nodes * (1.0 + (steps % PER_OCTAVE) / PER_OCTAVE)
     values = np.interp(np.log(nodes), np.log(coefficient.reynolds), coefficient.cd)
     return nodes, values
+
+
+def cell_lines(coefficient: DragCoefficient) -> Array:
+    """(CELLS, 2): a and b of C_D = a + b Re in each cell."""
+    nodes, values = resample(coefficient)
+    slopes = np.diff(values) / np.diff(nodes)
+    inside = np.column_stack([values[:-1] - slopes * nodes[:-1], slopes])
+    return np.vstack([inside, [values[-1], 0.0]])

@@ -5,20 +5,28 @@ to the water in the body frame, q (n,), q_dot (n,), thrust (m,). The current is 
 uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c.
 """
 
-import math
 from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.kernels.forward import forward_dynamics_into
+from uvms_dynamics.kernels.forward import accelerate
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.joints import passive_torque
-from uvms_dynamics.kernels.motion import make_workspace
+from uvms_dynamics.kernels.layout import HULL, RATE, TORQUE
+from uvms_dynamics.kernels.layout import JOINTS as N_JOINTS
+from uvms_dynamics.kernels.motion import (
+    down_in_body,
+    make_workspace,
+    set_angle,
+)
+from uvms_dynamics.kernels.primitives import root
+from uvms_dynamics.kernels.spatial import load6, plus, store6
 from uvms_dynamics.model import Model
 from uvms_dynamics.signals import Array
 from uvms_dynamics.thrusters import Thrusters, thrust_rate
 
-POSITION, QUATERNION, VELOCITY, JOINTS = 0, 3, 7, 13
+_FIRST = np.int64(0)
+POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
 
 
@@ -34,24 +42,19 @@ class Scratch(NamedTuple):
     """Tables that the integrator needs, allocated once."""
 
     work: Array  # of the kernels
-    quat: Array  # (4,)
-    tau: Array  # (6+n,)
-    acceleration: Array  # (6+n,)
     stage: Array  # (4, nx) derivatives of the Runge-Kutta stages
     trial: Array  # (nx,)
 
 
-def make_scratch(n: int, m: int) -> Scratch:
-    """Scratch tables for n joints and m thrusters."""
-    size = JOINTS + 2 * n + m
-    return Scratch(
-        make_workspace(n),
-        np.empty(4),
-        np.empty(6 + n),
-        np.empty(6 + n),
-        np.empty((4, size)),
-        np.empty(size),
-    )
+def make_scratch(system: System) -> Scratch:
+    """Scratch tables for a system."""
+    size = state_size(system)
+    return Scratch(make_workspace(system.model), np.empty((4, size)), np.empty(size))
+
+
+def state_size(system: System) -> int:
+    """Length of the state: 13 + 2n + m."""
+    return int(JOINTS + 2 * system.model[HULL, N_JOINTS]) + len(system.thrusters)
 
 
 @kernel
@@ -61,29 +64,16 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
     x (nx,) becomes the state at the end. Row k of states (steps+1, nx) is the state after k steps
     and row k of rates its derivative under these commands: thrust (m,) N, joint torque (n,) N m.
     """
-    n, m = effort.shape[0], thrust_command.shape[0]
-    model, current = system.model, system.current
-    matrix, limit, lag, slew = system.thrusters
-    work, quat, tau, acceleration, stage, trial = scratch
-    nu_r, q, q_dot = trial[VELOCITY:JOINTS], trial[JOINTS : JOINTS + n], trial[JOINTS + n :][:n]
-    thrust = trial[JOINTS + 2 * n :]
-    last = states.shape[0] - 1
+    model, thrusters, current = system
+    n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
+    work, stage, trial = scratch
     for s in range(last + 1):
-        for k in range(4):
-            _stage_state(x, stage, trial, k, step)
-            _unit_quaternion(trial, quat)
-            _pose_rates(current, quat, trial, stage, k)
-            _generalized_force(matrix, model.joints, q, q_dot, thrust, effort, tau)
-            forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, acceleration)
-            _velocity_rates(acceleration, q_dot, stage, k)
-            for i in range(m):
-                rate = thrust_rate(limit, lag, slew, i, thrust[i], thrust_command[i])
-                stage[k, JOINTS + 2 * n + i] = rate
-            if k == 0:
-                _record(x, stage, states, rates, s)
-                if s == last:
-                    return
-        _combine_stages(x, stage, quat, step)
+        derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, stage, _FIRST)
+        _record(x, stage, states, rates, s)
+        if s < last:
+            finish_step(
+                model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
+            )
 
 
 @inner
@@ -95,46 +85,67 @@ def _record(x, stage, states, rates, s):
 
 
 @inner
-def _stage_state(x, stage, trial, k, step):
-    """State at which the derivative of stage k is taken."""
-    if k == 0:
-        for i in range(x.shape[0]):
-            trial[i] = x[i]
-    else:
+def finish_step(
+    model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
+):
+    """Go on with x by one step; row 0 of stage holds its derivative."""
+    size = JOINTS + 2 * n + m
+    for k in range(1, 4):
         part = step if k == 3 else 0.5 * step
-        for i in range(x.shape[0]):
+        for i in range(size):
             trial[i] = x[i] + part * stage[k - 1, i]
-
-
-@inner
-def _combine_stages(x, stage, quat, step):
-    """One Runge-Kutta step of x; its quaternion is made unit again."""
-    for i in range(x.shape[0]):
+        derivative(model, thrusters, current, n, m, trial, thrust_command, effort, work, stage, k)
+    for i in range(size):
         x[i] += step / 6.0 * (stage[0, i] + 2.0 * (stage[1, i] + stage[2, i]) + stage[3, i])
-    _unit_quaternion(x, quat)
-    for i in range(4):
-        x[QUATERNION + i] = quat[i]
+    a, b, c, d = _unit_quaternion(x)
+    x[QUATERNION], x[QUATERNION + 1], x[QUATERNION + 2], x[QUATERNION + 3] = a, b, c, d
 
 
 @inner
-def _unit_quaternion(x, out):
-    """Unit quaternion (4,) of the state; Runge-Kutta stages leave the unit sphere a little."""
+def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
+    """Row k of out: the derivative of the state x under these commands."""
+    a, b, c, d = _unit_quaternion(x)
+    nu_r = _six(x, VELOCITY)
+    _set_pose_rates(current, nu_r, a, b, c, d, out, k)
+    for i in range(1, n + 1):
+        angle, rate = x[JOINTS + i - 1], x[JOINTS + n + i - 1]
+        set_angle(model, work, i, angle)
+        work[i, RATE] = rate
+        work[i, TORQUE] = effort[i - 1] + passive_torque(model, i, angle, rate)
+        out[k, JOINTS + i - 1] = rate
+    wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
+    nu_r_dot = accelerate(model, work, n, down_in_body(a, b, c, d), nu_r, wrench)
+    store6(out, k, VELOCITY, nu_r_dot)
+    for i in range(1, n + 1):
+        out[k, JOINTS + n + i - 1] = work[i, RATE]
+    for i in range(m):
+        thrust = x[JOINTS + 2 * n + i]
+        out[k, JOINTS + 2 * n + i] = thrust_rate(thrusters, i, thrust, thrust_command[i])
+
+
+@inner
+def _six(x, k):
+    """Six numbers of the state from k on."""
+    return x[k], x[k + 1], x[k + 2], x[k + 3], x[k + 4], x[k + 5]
+
+
+@inner
+def _unit_quaternion(x):
+    """Unit quaternion of the state; Runge-Kutta stages leave the unit sphere a little."""
     a, b, c, d = x[QUATERNION], x[QUATERNION + 1], x[QUATERNION + 2], x[QUATERNION + 3]
-    scale = 1.0 / math.sqrt(a * a + b * b + c * c + d * d)
-    out[0], out[1], out[2], out[3] = scale * a, scale * b, scale * c, scale * d
+    scale = 1.0 / root(a * a + b * b + c * c + d * d)
+    return scale * a, scale * b, scale * c, scale * d
 
 
 @inner
-def _pose_rates(current, quat, x, out, k):
+def _set_pose_rates(current, nu_r, a, b, c, d, out, k):
     """Row k of out: p_dot = R v_r + v_c and the quaternion's rate 1/2 quat (omega, 0)."""
-    a, b, c, d = quat[0], quat[1], quat[2], quat[3]
-    u, v, w = x[VELOCITY], x[VELOCITY + 1], x[VELOCITY + 2]
-    p, q, r = x[VELOCITY + 3], x[VELOCITY + 4], x[VELOCITY + 5]
+    u, v, w, p, q, r = nu_r
     # R v = v + 2 e x (e x v + d v), with e the vector part
     t0, t1, t2 = b * w - c * v + d * u, c * u - a * w + d * v, a * v - b * u + d * w
-    out[k, 0] = u + 2.0 * (b * t2 - c * t1) + current[0]
-    out[k, 1] = v + 2.0 * (c * t0 - a * t2) + current[1]
-    out[k, 2] = w + 2.0 * (a * t1 - b * t0) + current[2]
+    out[k, POSITION] = u + 2.0 * (b * t2 - c * t1) + current[0]
+    out[k, POSITION + 1] = v + 2.0 * (c * t0 - a * t2) + current[1]
+    out[k, POSITION + 2] = w + 2.0 * (a * t1 - b * t0) + current[2]
     out[k, QUATERNION] = 0.5 * (d * p + b * r - c * q)
     out[k, QUATERNION + 1] = 0.5 * (d * q + c * p - a * r)
     out[k, QUATERNION + 2] = 0.5 * (d * r + a * q - b * p)
@@ -142,23 +153,16 @@ def _pose_rates(current, quat, x, out, k):
 
 
 @inner
-def _generalized_force(matrix, joints, q, q_dot, thrust, effort, tau):
-    """Body wrench of the thrusters and torque of drives, friction and stops on the joints."""
-    for k in range(6):
-        total = 0.0
-        for i in range(thrust.shape[0]):
-            total += matrix[k, i] * thrust[i]
-        tau[k] = total
-    for i in range(effort.shape[0]):
-        tau[6 + i] = effort[i] + passive_torque(joints, i + 1, q[i], q_dot[i])
+def _thruster_wrench(thrusters, x, first):
+    """Body wrench of the thrusters, whose thrust stands in x from `first` on."""
+    wrench = _scaled_row(thrusters, _FIRST, x[first])
+    for i in range(1, thrusters.shape[0]):
+        wrench = plus(wrench, _scaled_row(thrusters, i, x[first + i]))
+    return wrench
 
 
 @inner
-def _velocity_rates(acceleration, q_dot, out, k):
-    """Row k of out: rates of nu_r, q and q_dot."""
-    n = q_dot.shape[0]
-    for i in range(6):
-        out[k, VELOCITY + i] = acceleration[i]
-    for i in range(n):
-        out[k, JOINTS + i] = q_dot[i]
-        out[k, JOINTS + n + i] = acceleration[6 + i]
+def _scaled_row(thrusters, i, thrust):
+    """Wrench of thruster i."""
+    k = load6(thrusters, i, _FIRST)
+    return k[0] * thrust, k[1] * thrust, k[2] * thrust, k[3] * thrust, k[4] * thrust, k[5] * thrust

@@ -166,10 +166,10 @@ def _carried(motion: Motion, pose: Pose) -> Motion:
 def _link_force(vehicle: Vehicle, link: Link, motion: Motion, weights: bool) -> Array:
     """Force (6,) that a link needs for its own motion, about its frame's origin."""
     nu_r, _ = motion.relative()
-    drag = body_forces.cross_flow_drag(
-        link.drag, vehicle.arm.drag_coefficient, nu_r, vehicle.environment
-    )
-    force = body_forces.rigid_body(link, motion) + body_forces.added_mass(link, motion) - drag
+    force = body_forces.rigid_body(link, motion) + body_forces.added_mass(link, motion)
+    for cylinder in link.drag:
+        across, along = vehicle.arm.drag_coefficient, vehicle.arm.friction_coefficient
+        force -= body_forces.cylinder_drag(cylinder, across, along, nu_r, vehicle.environment)
     if weights:
         force -= body_forces.weight_and_buoyancy(link, motion.down, vehicle.environment)
     return force

@@ -46,7 +46,7 @@ class Plant:
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
         current = np.array(config.current_ned_m_s, dtype=float)
         self._system = System(build_model(vehicle), build_thrusters(vehicle), current)
-        self._scratch = make_scratch(vehicle.n_joints, vehicle.n_thrusters)
+        self._scratch = make_scratch(self._system)
         self._state = initial_state(vehicle, config)
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)
@@ -92,7 +92,7 @@ class Plant:
         """
         thrust = _checked(thruster.thrust, self._vehicle.thruster_names, "thruster_command", "N")
         effort = _checked(joints.effort, self._vehicle.joint_names, "joint_command", "N m")
-        limit = self._system.model.joints[1:, EFFORT]
+        limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
         self._effort = np.clip(effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
         self._integrate(thrust, self._states, self._rates)

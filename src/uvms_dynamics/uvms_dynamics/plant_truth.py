@@ -7,6 +7,8 @@ import numpy as np
 from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.kernels import coupling_wrench, restoring_wrench
 from uvms_dynamics.kernels.hull import hull_hydrodynamic_wrench
+from uvms_dynamics.kernels.layout import HULL
+from uvms_dynamics.kernels.layout import JOINTS as JOINTS_COUNT
 from uvms_dynamics.model import Model
 from uvms_dynamics.rotations import quat_to_matrix, skew
 from uvms_dynamics.signals import Array, DisturbanceBudget, JointStates, Odometry
@@ -47,7 +49,7 @@ def true_disturbance(
     that of still water at the same motion over ground,
     W(nu_r, nu_r_dot) - W(nu, nu_dot), W = -(M_A nu_dot + C_A nu + D nu).
     """
-    n = model.joints.shape[0] - 1
+    n = int(model[HULL, JOINTS_COUNT])
     quat, nu_r, nu_r_dot = state[QUATERNION:VELOCITY], state[VELOCITY:JOINTS], rate[VELOCITY:JOINTS]
     q, q_dot = state[JOINTS : JOINTS + n], state[JOINTS + n : JOINTS + 2 * n]
     q_ddot = rate[JOINTS + n : JOINTS + 2 * n]

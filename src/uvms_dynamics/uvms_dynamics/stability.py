@@ -87,7 +87,7 @@ def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:
 def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
     """Slope (nx-3, nx-3) of the state's rate, without the position, which nothing depends on."""
     n, m = vehicle.n_joints, vehicle.n_thrusters
-    scratch, thrust = make_scratch(n, m), point.state[JOINTS + 2 * n :].copy()
+    scratch, thrust = make_scratch(system), point.state[JOINTS + 2 * n :].copy()
     row, rate = np.empty((1, len(point.state))), np.empty((1, len(point.state)))
 
     def rates(x: Array) -> Array:

@@ -1,21 +1,17 @@
 """Thrusters: what they do to the vehicle and how they follow a command."""
 
-from typing import NamedTuple
-
 import numpy as np
 
+from uvms_dynamics.kernels.arithmetic import bounded
 from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Vehicle
 
+Thrusters = Array
+"""Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, time constant and
+slew limit."""
 
-class Thrusters(NamedTuple):
-    """Tables of m thrusters for the kernels, SI."""
-
-    matrix: Array  # (6, m) wrench per newton
-    limit: Array  # (m,) greatest thrust, either way
-    time_constant: Array  # (m,)
-    slew_limit: Array  # (m,) N/s
+LIMIT, TIME_CONSTANT, SLEW = np.arange(6, 9)
 
 
 def thruster_matrix(vehicle: Vehicle) -> Array:
@@ -28,16 +24,13 @@ def thruster_matrix(vehicle: Vehicle) -> Array:
 def build_thrusters(vehicle: Vehicle) -> Thrusters:
     """Thruster tables of a vehicle."""
     parts = vehicle.thrusters
-    return Thrusters(
-        thruster_matrix(vehicle),
-        np.array([part.limit_n for part in parts]),
-        np.array([part.time_constant_s for part in parts]),
-        np.array([part.slew_limit_n_s for part in parts]),
-    )
+    drives = [[part.limit_n, part.time_constant_s, part.slew_limit_n_s] for part in parts]
+    return np.hstack([thruster_matrix(vehicle).T, drives])
 
 
 @inner
-def thrust_rate(limit, time_constant, slew, i, thrust, command):
+def thrust_rate(thrusters, i, thrust, command):
     """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
-    wanted = min(max(command, -limit[i]), limit[i])
-    return min(max((wanted - thrust) / time_constant[i], -slew[i]), slew[i])
+    limit, slew = thrusters[i, LIMIT], thrusters[i, SLEW]
+    wanted = bounded(command, limit)
+    return bounded((wanted - thrust) / thrusters[i, TIME_CONSTANT], slew)

@@ -1,17 +1,21 @@
 """Where the arm's frames and the tool are: poses, Jacobian, weight and buoyancy."""
 
-import math
-
 import numpy as np
 
+from uvms_dynamics.kernels.arithmetic import sine_cosine
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
+    COS_TURN,
+    COS_TWIST,
+    HULL,
     NET_MOMENT,
     NET_WEIGHT,
     OFFSET,
+    PLACE,
+    SIN_TURN,
+    SIN_TWIST,
     TOOL_POSITION,
-    TREE_POSITION,
-    TREE_ROTATION,
+    TOOL_ROTATION,
 )
 from uvms_dynamics.kernels.motion import down_in_body
 from uvms_dynamics.kernels.spatial import cross, load3
@@ -24,31 +28,30 @@ _FRAME_COLUMNS = 12
 
 
 @inner
-def joint_frames(joints, q, frames):
-    """Set rows 1..n of frames (n+1, 12) to the joint frames in the body frame; row 0: itself."""
+def joint_frames(model, q, frames):
+    """Rows 0..n of frames (n+1, 12): the frames of the hull and the joints in the body frame."""
+    c, s = model[HULL, COS_TURN], model[HULL, SIN_TURN]
     for k in range(_FRAME_COLUMNS):
-        frames[0, k] = 1.0 if k in (0, 4, 8) else 0.0
+        frames[0, k] = 0.0
+    frames[0, 0], frames[0, 1], frames[0, 3], frames[0, 4], frames[0, 8] = c, -s, s, c, 1.0
     for i in range(1, q.shape[0] + 1):
-        p0, p1, p2 = load3(joints, i, TREE_POSITION)
+        p0, p1, p2 = load3(model, i, PLACE)
         x0, x1, x2 = _apply(frames, i - 1, p0, p1, p2)
         frames[i, _ORIGIN] = frames[i - 1, _ORIGIN] + x0
         frames[i, _ORIGIN + 1] = frames[i - 1, _ORIGIN + 1] + x1
         frames[i, _ORIGIN + 2] = frames[i - 1, _ORIGIN + 2] + x2
-        angle = q[i - 1] + joints[i, OFFSET]
-        c, s = math.cos(angle), math.sin(angle)
-        _set_axes(joints, frames, i, c, s)
+        s, c = sine_cosine(q[i - 1] + model[i, OFFSET])
+        _set_axes(model, frames, i, c, s)
 
 
 @inner
-def _set_axes(joints, frames, i, c, s):
-    """Rotation of frame i: its parent's, the joint's fixed rotation, then Rz."""
-    t = TREE_ROTATION
-    x0, x1, x2 = _apply(frames, i - 1, joints[i, t], joints[i, t + 3], joints[i, t + 6])
-    y0, y1, y2 = _apply(frames, i - 1, joints[i, t + 1], joints[i, t + 4], joints[i, t + 7])
-    z0, z1, z2 = _apply(frames, i - 1, joints[i, t + 2], joints[i, t + 5], joints[i, t + 8])
-    frames[i, 0], frames[i, 1], frames[i, 2] = x0 * c + y0 * s, y0 * c - x0 * s, z0
-    frames[i, 3], frames[i, 4], frames[i, 5] = x1 * c + y1 * s, y1 * c - x1 * s, z1
-    frames[i, 6], frames[i, 7], frames[i, 8] = x2 * c + y2 * s, y2 * c - x2 * s, z2
+def _set_axes(model, frames, i, c, s):
+    """Rotation of frame i: its parent's, Rx of the twist, then Rz of the joint."""
+    ct, st = model[i, COS_TWIST], model[i, SIN_TWIST]
+    for k in range(0, _ORIGIN, 3):
+        x, y, z = load3(frames, i - 1, k)
+        y, z = ct * y + st * z, ct * z - st * y
+        frames[i, k], frames[i, k + 1], frames[i, k + 2] = x * c + y * s, y * c - x * s, z
 
 
 @inner
@@ -62,9 +65,9 @@ def _apply(frames, i, x, y, z):
 
 
 @inner
-def _tool_position(tool, frames, n):
+def _tool_position(model, frames, n):
     """Tool in the body frame."""
-    p0, p1, p2 = load3(tool, TOOL_POSITION, _FIRST)
+    p0, p1, p2 = load3(model, n + 1, TOOL_POSITION)
     x0, x1, x2 = _apply(frames, n, p0, p1, p2)
     return frames[n, _ORIGIN] + x0, frames[n, _ORIGIN + 1] + x1, frames[n, _ORIGIN + 2] + x2
 
@@ -77,15 +80,18 @@ def end_effector(model, position, quat, q):
     """
     n = q.shape[0]
     frames = np.empty((n + 1, _FRAME_COLUMNS))
-    joint_frames(model.joints, q, frames)
-    body, tool = quat_to_matrix(quat), model.tool
-    x, y, z = _tool_position(tool, frames, n)
+    joint_frames(model, q, frames)
+    body = quat_to_matrix(quat)
+    x, y, z = _tool_position(model, frames, n)
     place, turned = np.empty(3), np.empty((3, 3))
     for row in range(3):
         b0, b1, b2 = body[row, 0], body[row, 1], body[row, 2]
         place[row] = position[row] + b0 * x + b1 * y + b2 * z
         for column in range(3):
-            t0, t1, t2 = _apply(frames, n, tool[0, column], tool[1, column], tool[2, column])
+            k = TOOL_ROTATION + column
+            t0, t1, t2 = _apply(
+                frames, n, model[n + 1, k], model[n + 1, k + 3], model[n + 1, k + 6]
+            )
             turned[row, column] = b0 * t0 + b1 * t1 + b2 * t2
     return place, turned
 
@@ -98,30 +104,29 @@ def end_effector_jacobian(model, quat, q):
     """
     n = q.shape[0]
     frames = np.empty((n + 1, _FRAME_COLUMNS))
-    joint_frames(model.joints, q, frames)
+    joint_frames(model, q, frames)
     body = quat_to_matrix(quat)
-    x, y, z = _tool_position(model.tool, frames, n)
+    x, y, z = _tool_position(model, frames, n)
     jacobian = np.zeros((6, 6 + n))
     unit = np.eye(3)
     for k in range(3):
-        a0, a1, a2 = load3(unit, k, _FIRST)
-        _column(jacobian, k, body, a0, a1, a2, 0.0, 0.0, 0.0)
-        l0, l1, l2 = cross(a0, a1, a2, x, y, z)
-        _column(jacobian, 3 + k, body, l0, l1, l2, a0, a1, a2)
+        axis = load3(unit, k, _FIRST)
+        _column(jacobian, k, body, axis, (0.0, 0.0, 0.0))
+        _column(jacobian, 3 + k, body, cross(axis, (x, y, z)), axis)
     for i in range(1, n + 1):
-        z0, z1, z2 = frames[i, 2], frames[i, 5], frames[i, 8]
+        axis = (frames[i, 2], frames[i, 5], frames[i, 8])
         o0, o1, o2 = load3(frames, i, _ORIGIN)
-        l0, l1, l2 = cross(z0, z1, z2, x - o0, y - o1, z - o2)
-        _column(jacobian, 5 + i, body, l0, l1, l2, z0, z1, z2)
+        _column(jacobian, 5 + i, body, cross(axis, (x - o0, y - o1, z - o2)), axis)
     return jacobian
 
 
 @inner
-def _column(jacobian, column, body, l0, l1, l2, a0, a1, a2):
+def _column(jacobian, column, body, linear, angular):
     """One column, turned from body to world axes."""
     for row in range(3):
-        jacobian[row, column] = body[row, 0] * l0 + body[row, 1] * l1 + body[row, 2] * l2
-        jacobian[3 + row, column] = body[row, 0] * a0 + body[row, 1] * a1 + body[row, 2] * a2
+        b0, b1, b2 = body[row, 0], body[row, 1], body[row, 2]
+        jacobian[row, column] = b0 * linear[0] + b1 * linear[1] + b2 * linear[2]
+        jacobian[3 + row, column] = b0 * angular[0] + b1 * angular[1] + b2 * angular[2]
 
 
 @kernel
@@ -132,19 +137,19 @@ def restoring_wrench(model, quat, q):
     f = sum (m g - rho V g) k, n = P x k, P = sum m g r_g - rho V g r_b, k the down direction.
     """
     n = q.shape[0]
-    bodies, frames = model.bodies, np.empty((n + 1, _FRAME_COLUMNS))
-    joint_frames(model.joints, q, frames)
+    frames = np.empty((n + 1, _FRAME_COLUMNS))
+    joint_frames(model, q, frames)
     total, p0, p1, p2 = 0.0, 0.0, 0.0, 0.0
     for i in range(n + 1):
-        w = bodies[i, NET_WEIGHT]
-        m0, m1, m2 = load3(bodies, i, NET_MOMENT)
+        w = model[i, NET_WEIGHT]
+        m0, m1, m2 = load3(model, i, NET_MOMENT)
         m0, m1, m2 = _apply(frames, i, m0, m1, m2)
         total += w
         p0 += w * frames[i, _ORIGIN] + m0
         p1 += w * frames[i, _ORIGIN + 1] + m1
         p2 += w * frames[i, _ORIGIN + 2] + m2
-    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    down = down_in_body(quat[0], quat[1], quat[2], quat[3])
     out = np.empty(6)
-    out[0], out[1], out[2] = total * k0, total * k1, total * k2
-    out[3], out[4], out[5] = cross(p0, p1, p2, k0, k1, k2)
+    out[0], out[1], out[2] = total * down[0], total * down[1], total * down[2]
+    out[3], out[4], out[5] = cross((p0, p1, p2), down)
     return out

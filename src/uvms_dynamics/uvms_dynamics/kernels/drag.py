@@ -1,49 +1,242 @@
-"""Cross-flow drag of the links by strips, with each strip's own Reynolds number."""
+"""Drag of the links: cross flow over cylinders by strips, and friction along their axes.
 
-import math
+The cylinders of an arm are independent of each other, so a single simulation works on eight of them
+at once: its links leave their velocities in slots, eight cylinders to a group, and fetch forces
+from there. Many simulations at once take one cylinder after the other. Both use `_cylinder_drag`.
+"""
 
 import numpy as np
+from numba import types
+from numba.extending import overload
 
-from uvms_dynamics.drag_table import FIRST_OCTAVE, PER_OCTAVE_BITS
-from uvms_dynamics.kernels.jit import inner
-from uvms_dynamics.kernels.layout import STRIP_AREA, STRIP_AXIS, STRIP_PLACE, STRIP_REYNOLDS
-from uvms_dynamics.kernels.spatial import cross, load3
+from uvms_dynamics.drag_table import FIRST_OCTAVE, LAST_OCTAVE, PER_OCTAVE_BITS
+from uvms_dynamics.kernels.jit import OPTIONS, inner
+from uvms_dynamics.kernels.lanes import (
+    LANES,
+    LaneArrayType,
+    LanesType,
+    lane_of,
+    lanes_at,
+    put_lanes,
+    with_lane,
+)
+from uvms_dynamics.kernels.layout import (
+    AXIAL,
+    AXIAL_AREA,
+    AXIAL_REYNOLDS,
+    AXIS,
+    CENTER,
+    CROSS_FLOW,
+    CROSS_REYNOLDS,
+    CYLINDERS,
+    DRAG_BEGIN,
+    DRAG_END,
+    FORCE,
+    GROUPS,
+    HULL,
+    JOINTS,
+    STRIP,
+    STRIPS,
+    WORK_COLUMNS,
+)
+from uvms_dynamics.kernels.primitives import item, larger, put_item, root, size, smaller, zero_like
+from uvms_dynamics.kernels.spatial import angular, cross, linear, load6, minus, pair, plus3, store6
 
-_SHIFT = 52 - PER_OCTAVE_BITS  # a float64 has 52 bits of mantissa below its exponent
-_MASK = (1 << _SHIFT) - 1
-_CELL = 1.0 / (1 << _SHIFT)
-_FIRST = (1023 + FIRST_OCTAVE) << PER_OCTAVE_BITS  # 1023: the exponent's bias
+_LOWEST, _HIGHEST = 2.0**FIRST_OCTAVE, 2.0**LAST_OCTAVE
+_SHIFT = np.int64(52 - PER_OCTAVE_BITS)  # a float64 has 52 bits of mantissa below its exponent
+_BEFORE = np.int64((1023 + FIRST_OCTAVE) << PER_OCTAVE_BITS)  # 1023: the exponent's bias
+SLOT_NUMBERS = 12  # of a cylinder: velocity of its link, then force on it
+
+
+def meet_water(model, work, i, v):
+    """Drag on link i for its velocity: what it must overcome is in FORCE after `resist`."""
+
+
+def resist(model, work):
+    """Add what all links must overcome to their FORCE."""
+
+
+@overload(meet_water, jit_options=OPTIONS)
+def _meet_water(model, work, i, v):
+    if isinstance(work, LaneArrayType):
+        return _meet_water_now
+    return _leave_velocity
+
+
+@overload(resist, jit_options=OPTIONS)
+def _resist(model, work):
+    if isinstance(work, LaneArrayType):
+        return lambda model, work: None
+    return _resist_by_groups
+
+
+def _meet_water_now(model, work, i, v):
+    strips, block = np.int64(model[HULL, STRIPS]), np.int64(model[HULL, CYLINDERS])
+    stride = LANES * (STRIP + 2 * strips)
+    force = load6(work, i, FORCE)
+    for slot in range(np.int64(model[i, DRAG_BEGIN]), np.int64(model[i, DRAG_END])):
+        group, lane = slot // LANES, slot % LANES
+        force = minus(force, _cylinder_drag(model, block + group * stride, strips, lane, v))
+    store6(work, i, FORCE, force)
+
+
+def _leave_velocity(model, work, i, v):
+    for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
+        first = _slot(model, slot)
+        for k in range(6):
+            put_item(work, first + LANES * k, v[k])
+
+
+def _resist_by_groups(model, work):
+    strips, block = np.int64(model[HULL, STRIPS]), np.int64(model[HULL, CYLINDERS])
+    stride = LANES * (STRIP + 2 * strips)
+    n, slots = np.int64(model[HULL, JOINTS]), _slot(model, 0)
+    for group in range(np.int64(model[HULL, GROUPS])):
+        first = slots + LANES * SLOT_NUMBERS * group
+        v = _six_lanes(work, first)
+        force = _cylinder_drag(model, block + group * stride, strips, None, v)
+        for k in range(6):
+            put_lanes(work, first + LANES * (6 + k), force[k])
+    for i in range(1, n + 1):
+        force = load6(work, i, FORCE)
+        for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
+            force = minus(force, _six_items(work, _slot(model, slot) + 6 * LANES))
+        store6(work, i, FORCE, force)
 
 
 @inner
-def strip_drag(strips, coefficient, s, v0, v1, v2, w0, w1, w2):
-    """Drag on strip s about its link's origin, from the link's motion through the water.
+def _slot(model, slot):
+    """First item of a slot in the workspace, behind the rows of the bodies."""
+    bodies = (np.int64(model[HULL, JOINTS]) + 1) * WORK_COLUMNS
+    group, lane = np.uint64(slot) // np.uint64(LANES), np.uint64(slot) % np.uint64(LANES)
+    return bodies + np.int64(np.uint64(LANES * SLOT_NUMBERS) * group + lane)
 
-    f = -1/2 rho C_D(Re) D |v_n| v_n dl, v_n the strip's velocity across the axis and
-    Re = |v_n| D / viscosity (section 2.2.1).
+
+@inner
+def _six_lanes(work, k):
+    return (
+        lanes_at(work, k),
+        lanes_at(work, k + LANES),
+        lanes_at(work, k + 2 * LANES),
+        lanes_at(work, k + 3 * LANES),
+        lanes_at(work, k + 4 * LANES),
+        lanes_at(work, k + 5 * LANES),
+    )
+
+
+@inner
+def _six_items(work, k):
+    return (
+        item(work, k),
+        item(work, k + LANES),
+        item(work, k + 2 * LANES),
+        item(work, k + 3 * LANES),
+        item(work, k + 4 * LANES),
+        item(work, k + 5 * LANES),
+    )
+
+
+@inner
+def _cylinder_drag(model, block, strips, lane, v):
+    """Drag of one cylinder of a group, or of all eight (lane is None), about the link's origin.
+
+    Across the axis df = -1/2 rho C_D(Re) D |u| u ds, with u the velocity of the strip at s across
+    the axis and Re = |u| D / viscosity (section 2.2.1). Along it f = -1/2 rho C_f S |u_a| u_a
+    with the wetted surface S: all strips move along the axis alike.
     """
-    r0, r1, r2 = load3(strips, s, STRIP_PLACE)
-    a0, a1, a2 = load3(strips, s, STRIP_AXIS)
-    c0, c1, c2 = cross(w0, w1, w2, r0, r1, r2)
-    u0, u1, u2 = v0 + c0, v1 + c1, v2 + c2
-    along = u0 * a0 + u1 * a1 + u2 * a2
-    u0, u1, u2 = u0 - along * a0, u1 - along * a1, u2 - along * a2
-    speed = math.sqrt(u0 * u0 + u1 * u1 + u2 * u2)
-    drag = drag_coefficient(coefficient, speed * strips[s, STRIP_REYNOLDS])
-    scale = -strips[s, STRIP_AREA] * drag * speed
-    d0, d1, d2 = scale * u0, scale * u1, scale * u2
-    m0, m1, m2 = cross(r0, r1, r2, d0, d1, d2)
-    return d0, d1, d2, m0, m1, m2
+    center, axis = _three(model, block, CENTER, lane), _three(model, block, AXIS, lane)
+    u = plus3(linear(v), cross(angular(v), center))
+    along = _dot(u, axis)
+    u = u[0] - along * axis[0], u[1] - along * axis[1], u[2] - along * axis[2]
+    turn = cross(angular(v), axis)
+    sum0, sum1, sum2 = _strip_sums(model, block, strips, lane, u, turn)
+    friction = _number(model, block, AXIAL_AREA, lane) * size(along) * along
+    reynolds = _number(model, block, AXIAL_REYNOLDS, lane) * size(along)
+    friction *= coefficient(model, np.int64(model[HULL, AXIAL]), reynolds)
+    force = (
+        -(u[0] * sum0 + turn[0] * sum1 + friction * axis[0]),
+        -(u[1] * sum0 + turn[1] * sum1 + friction * axis[1]),
+        -(u[2] * sum0 + turn[2] * sum1 + friction * axis[2]),
+    )
+    lever = (
+        -(u[0] * sum1 + turn[0] * sum2),
+        -(u[1] * sum1 + turn[1] * sum2),
+        -(u[2] * sum1 + turn[2] * sum2),
+    )
+    return pair(force, plus3(cross(center, force), cross(axis, lever)))
 
 
 @inner
-def drag_coefficient(table, reynolds):
-    """C_D(Re), linear between the points of `drag_table`, constant beyond its ends."""
-    bits = np.float64(reynolds).view(np.int64)
-    k = (bits >> _SHIFT) - _FIRST
-    if k < 0:
-        return table[0]
-    if k >= table.shape[0] - 1:
-        return table[table.shape[0] - 1]
-    part = float(bits & _MASK) * _CELL
-    return table[k] + part * (table[k + 1] - table[k])
+def _strip_sums(model, block, strips, lane, u, turn):
+    """Sums of k, s k and s^2 k over the strips at s, each of which resists with -k (u + s turn)."""
+    slip, mixed, spin = _dot(u, u), 2.0 * _dot(u, turn), _dot(turn, turn)
+    first, per_speed = (
+        np.int64(model[HULL, CROSS_FLOW]),
+        _number(model, block, CROSS_REYNOLDS, lane),
+    )
+    sum0, sum1, sum2 = zero_like(u[0]), zero_like(u[0]), zero_like(u[0])
+    for strip in range(strips):
+        s = _number(model, block, STRIP + 2 * strip, lane)
+        area = _number(model, block, STRIP + 2 * strip + 1, lane)
+        speed = root(larger(slip + s * (mixed + s * spin), 0.0))  # rounding may go below zero
+        k = area * (coefficient(model, first, per_speed * speed) * speed)
+        sum0, sum1, sum2 = sum0 + k, sum1 + s * k, sum2 + s * (s * k)
+    return sum0, sum1, sum2
+
+
+@inner
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+@inner
+def _three(model, block, k, lane):
+    """A vector of a cylinder."""
+    return (
+        _number(model, block, k, lane),
+        _number(model, block, k + 1, lane),
+        _number(model, block, k + 2, lane),
+    )
+
+
+def _number(model, block, k, lane):
+    """Number k of a cylinder, or of all eight of a group where lane is None."""
+
+
+@overload(_number, jit_options=OPTIONS)
+def _number_of(model, block, k, lane):
+    if isinstance(lane, types.NoneType):
+        return lambda model, block, k, lane: lanes_at(model, block + LANES * k)
+    return lambda model, block, k, lane: item(model, block + LANES * k + lane)
+
+
+@inner
+def coefficient(model, first, reynolds):
+    """C(Re), linear in each cell of `drag_table`, constant beyond its ends."""
+    inside = smaller(larger(reynolds, _LOWEST), _HIGHEST)
+    a, b = _cell_line(model, first, inside)
+    return a + b * inside
+
+
+def _cell_line(model, first, reynolds):
+    """The line (a, b) of the cell in which a Reynolds number lies: its highest bits say which."""
+
+
+@overload(_cell_line, jit_options=OPTIONS)
+def _cell_line_of(model, first, reynolds):
+    if isinstance(reynolds, LanesType):
+        return _cell_lines
+    return _one_cell_line
+
+
+def _one_cell_line(model, first, reynolds):
+    cell = first + 2 * ((np.float64(reynolds).view(np.int64) >> _SHIFT) - _BEFORE)
+    return item(model, cell), item(model, cell + 1)
+
+
+def _cell_lines(model, first, reynolds):
+    a, b = reynolds, reynolds
+    for lane in range(LANES):
+        low, slope = _cell_line(model, first, lane_of(reynolds, lane))
+        a, b = with_lane(a, lane, low), with_lane(b, lane, slope)
+    return a, b

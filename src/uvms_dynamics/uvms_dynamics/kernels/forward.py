@@ -2,39 +2,49 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.hull import damping
-from uvms_dynamics.kernels.inertia import add_to_parent, copy_inertia
+from uvms_dynamics.kernels.drag import resist
+from uvms_dynamics.kernels.inertia import (
+    axis_force,
+    inertia_to_parent,
+    load_inertia,
+    plus_inertia,
+    released,
+    solve_inertia,
+)
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
-    ACCELERATION,
     AXIS_FORCE,
-    DOWN,
     FORCE,
     HULL,
+    INERTIA,
     INVERSE,
-    LAST_ROW,
-    REST,
+    RATE,
     ROTOR,
-    VELOCITY,
+    TORQUE,
+    VELOCITY_PRODUCT,
 )
 from uvms_dynamics.kernels.motion import (
-    bias_force,
-    carry_down,
-    carry_velocity,
     down_in_body,
+    hull_bias_force,
+    into_body,
+    into_hull,
+    link_velocity,
     make_workspace,
-    resist,
+    set_angle,
+    set_link_force,
+    to_hull,
+    velocity_product,
 )
-from uvms_dynamics.kernels.solve import solve_symmetric
+from uvms_dynamics.kernels.primitives import zero_like
 from uvms_dynamics.kernels.spatial import (
-    add,
     force_to_parent,
-    load,
+    linear,
+    load6,
+    minus,
     motion_to_child,
-    set_rotation,
-    store,
-    store3,
-    times,
+    plus,
+    store6,
+    to_child,
 )
 
 
@@ -47,8 +57,7 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
     """
     out = np.empty(6 + q.shape[0])
-    work = make_workspace(q.shape[0])
-    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out)
+    forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, make_workspace(model), out)
     return out
 
 
@@ -56,91 +65,112 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
 def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
     n = q.shape[0]
-    bodies, joints = model.bodies, model.joints
-    strips, start, coefficient = model.strips, model.strip_start, model.drag_coefficient
-    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    store3(work, HULL, DOWN, k0, k1, k2)
-    store(work, HULL, VELOCITY, nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
-    bias_force(bodies, work, HULL)
-    _hull_forces(model.hull, tau, work)
-    copy_inertia(bodies, work, HULL)
-    for i in range(1, n + 1):  # outward: velocities and bias forces
-        set_rotation(joints, work, i, q[i - 1])
-        carry_down(work, i)
-        x0, x1, y0, y1 = carry_velocity(joints, work, i, q_dot[i - 1])
-        store(work, i, ACCELERATION, x0, x1, 0.0, y0, y1, 0.0)
-        bias_force(bodies, work, i)
-        resist(strips, start, coefficient, work, i)
-        copy_inertia(bodies, work, i)
-    for i in range(n, 0, -1):  # inward: articulated inertias and bias forces
-        _release_joint(work, i, tau[5 + i], joints[i, ROTOR])
-        _hand_bias_on(joints, work, i)
-        add_to_parent(joints, work, i)
-    _hull_acceleration(work, out)
-    for i in range(1, n + 1):  # outward: accelerations
-        out[5 + i] = _joint_acceleration(joints, work, i)
+    down = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
+    wrench = (tau[0], tau[1], tau[2], tau[3], tau[4], tau[5])
+    for i in range(1, n + 1):
+        set_angle(model, work, i, q[i - 1])
+        work[i, RATE], work[i, TORQUE] = q_dot[i - 1], tau[5 + i]
+    out[0], out[1], out[2], out[3], out[4], out[5] = accelerate(model, work, n, down, nu, wrench)
+    for i in range(1, n + 1):
+        out[5 + i] = work[i, RATE]
 
 
 @inner
-def _hull_forces(hull, tau, work):
-    """Damping of the hull less the body wrench, added to its bias force."""
-    for k in range(6):
-        work[0, FORCE + k] += damping(hull, k, work[0, VELOCITY + k]) - tau[k]
+def accelerate(model, work, n, down, nu_r, wrench):
+    """Acceleration of the hull; RATE of the joints becomes their acceleration.
 
-
-@inner
-def _release_joint(work, i, torque, rotor):
-    """Articulated inertia of link i, free about its joint: I - U U^T / D.
-
-    U = I S, D = S^T U + rotor, u = tau - S^T p. The joint's motion S is a turn about z, so U is
-    the last column of I.
+    The workspace holds angle, rate and torque of each joint; the down direction, nu_r and the
+    wrench on the hull are given in the body frame, as is the result.
     """
-    u0, u1, u2, u3, u4, u5 = load(work, i, LAST_ROW)  # the matrix is symmetric
-    inverse = 1.0 / (u5 + rotor)
-    store(work, i, AXIS_FORCE, u0, u1, u2, u3, u4, u5)
-    work[i, INVERSE] = inverse
-    work[i, REST] = torque - work[i, FORCE + 5]
-    for row in range(6):
-        scaled = -inverse * work[i, AXIS_FORCE + row]
-        add(
-            work, i, 6 * row,
-            scaled * u0, scaled * u1, scaled * u2, scaled * u3, scaled * u4, scaled * u5,
-        )  # fmt: skip
-
-
-@inner
-def _hand_bias_on(joints, work, i):
-    """Bias force p + I c + U u / D of link i, added to its parent's."""
-    c0, c1, c2, d0, d1, d2 = load(work, i, ACCELERATION)
-    f0, f1, f2, n0, n1, n2 = times(work, i, c0, c1, c2, d0, d1, d2)
-    add(work, i, FORCE, f0, f1, f2, n0, n1, n2)
-    gain = work[i, REST] * work[i, INVERSE]
-    u0, u1, u2, u3, u4, u5 = load(work, i, AXIS_FORCE)
-    add(work, i, FORCE, gain * u0, gain * u1, gain * u2, gain * u3, gain * u4, gain * u5)
-    f0, f1, f2, n0, n1, n2 = load(work, i, FORCE)
-    f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2)
-    add(work, i - 1, FORCE, f0, f1, f2, n0, n1, n2)
-
-
-@inner
-def _hull_acceleration(work, out):
-    """Solve the articulated inertia of the hull for its acceleration."""
-    for k in range(6):
-        out[k] = -work[0, FORCE + k]
-    solve_symmetric(work, out)
-    for k in range(6):
-        work[0, ACCELERATION + k] = out[k]
-
-
-@inner
-def _joint_acceleration(joints, work, i):
-    """Acceleration of link i from its parent's; returns the joint's own."""
-    a0, a1, a2, b0, b1, b2 = load(work, i - 1, ACCELERATION)
-    a0, a1, a2, b0, b1, b2 = motion_to_child(joints, work, i, a0, a1, a2, b0, b1, b2)
-    add(work, i, ACCELERATION, a0, a1, a2, b0, b1, b2)
-    a0, a1, a2, b0, b1, b2 = load(work, i, ACCELERATION)
-    u0, u1, u2, u3, u4, u5 = load(work, i, AXIS_FORCE)
-    needed = u0 * a0 + u1 * a1 + u2 * a2 + u3 * b0 + u4 * b1 + u5 * b2
-    result = (work[i, REST] - needed) * work[i, INVERSE]
-    work[i, ACCELERATION + 5] = b2 + result
+    v, k = into_hull(model, nu_r), to_hull(model, down)
+    none = _zeros(v[0])
+    bias = minus(hull_bias_force(model, v, k), into_hull(model, wrench))
+    for i in range(1, n + 1):  # outward: velocities and bias forces
+        rate = work[i, RATE]
+        v, k = link_velocity(model, work, i, v, rate), to_child(model, work, i, k)
+        _store4(work, i, VELOCITY_PRODUCT, velocity_product(v, rate))
+        set_link_force(model, work, i, v, k, none)
+    resist(model, work)
+    inertia, force = _gather(model, work, n, v)
+    inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)
+    a = solve_inertia(inertia, minus(_opposite(bias), force))
+    result = into_body(model, a)
+    for i in range(1, n + 1):  # outward: accelerations
+        a = _accelerate_joint(model, work, i, a)
     return result
+
+
+@inner
+def _gather(model, work, n, like):
+    """Articulated inertia and bias force of the whole arm at the hull, from the tip inward."""
+    force = _zeros(like[0])
+    inertia = force + force + force + linear(force)
+    for i in range(n, 0, -1):
+        inertia = plus_inertia(load_inertia(model, i, INERTIA), inertia)
+        force = plus(load6(work, i, FORCE), force)
+        # I - U U^T / D with U = I S, D = S^T U + rotor, and p + I c + U (tau - S^T p) / D
+        u = axis_force(inertia)
+        inverse = 1.0 / (u[5] + model[i, ROTOR])
+        rest = work[i, TORQUE] - force[5]
+        store6(work, i, AXIS_FORCE, u)
+        work[i, INVERSE], work[i, TORQUE] = inverse, rest
+        inertia = released(inertia, u, inverse)
+        force = plus(force, _times_velocity_product(inertia, work, i))
+        force = plus(force, _scaled(rest * inverse, u))
+        force = force_to_parent(model, work, i, force)
+        inertia = inertia_to_parent(model, work, i, inertia)
+    return inertia, force
+
+
+@inner
+def _accelerate_joint(model, work, i, a):
+    """Acceleration of link i from its parent's, and of its joint."""
+    k = VELOCITY_PRODUCT
+    a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a)
+    a0, a1 = a0 + work[i, k], a1 + work[i, k + 1]
+    b0, b1 = b0 + work[i, k + 2], b1 + work[i, k + 3]
+    u0, u1, u2, u3, u4, u5 = load6(work, i, AXIS_FORCE)
+    needed = (u0 * a0 + u1 * a1 + u2 * a2) + (u3 * b0 + u4 * b1 + u5 * b2)
+    result = (work[i, TORQUE] - needed) * work[i, INVERSE]
+    work[i, RATE] = result
+    return a0, a1, a2, b0, b1, b2 + result
+
+
+@inner
+def _times_velocity_product(inertia, work, i):
+    """I c with the velocity product c, which has no parts along z."""
+    a00, a01, a02, a11, a12, _ = inertia[:6]
+    b00, b01, b02, b10, b11, b12, b20, b21, _ = inertia[6:15]
+    c00, c01, c02, c11, c12, _ = inertia[15:]
+    k = VELOCITY_PRODUCT
+    x0, x1, y0, y1 = work[i, k], work[i, k + 1], work[i, k + 2], work[i, k + 3]
+    return (
+        (a00 * x0 + a01 * x1) + (b00 * y0 + b01 * y1),
+        (a01 * x0 + a11 * x1) + (b10 * y0 + b11 * y1),
+        (a02 * x0 + a12 * x1) + (b20 * y0 + b21 * y1),
+        (b00 * x0 + b10 * x1) + (c00 * y0 + c01 * y1),
+        (b01 * x0 + b11 * x1) + (c01 * y0 + c11 * y1),
+        (b02 * x0 + b12 * x1) + (c02 * y0 + c12 * y1),
+    )
+
+
+@inner
+def _zeros(like):
+    zero = zero_like(like)
+    return zero, zero, zero, zero, zero, zero
+
+
+@inner
+def _store4(work, i, k, a):
+    work[i, k], work[i, k + 1], work[i, k + 2], work[i, k + 3] = a[0], a[1], a[2], a[3]
+
+
+@inner
+def _scaled(s, a):
+    return s * a[0], s * a[1], s * a[2], s * a[3], s * a[4], s * a[5]
+
+
+@inner
+def _opposite(a):
+    return -a[0], -a[1], -a[2], -a[3], -a[4], -a[5]

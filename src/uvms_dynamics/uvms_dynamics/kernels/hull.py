@@ -1,12 +1,12 @@
 """Forces on the hull that depend on its motion through the water."""
 
-import math
-
 import numpy as np
 
-from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import ADDED_MASS, HULL, LINEAR, QUADRATIC
-from uvms_dynamics.kernels.spatial import gyroscopic
+from uvms_dynamics.kernels.inertia import load_inertia
+from uvms_dynamics.kernels.jit import kernel
+from uvms_dynamics.kernels.layout import ADDED_MASS, HULL, JOINTS
+from uvms_dynamics.kernels.motion import hull_bias_force, hull_damping, into_body, into_hull
+from uvms_dynamics.kernels.spatial import gyroscopic, plus, times
 
 
 @kernel
@@ -15,34 +15,23 @@ def hull_bias_wrench(model, nu_r):
 
     nu_r (6,) is the velocity relative to the water, body frame. Section 2.2 of the paper.
     """
+    nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
+    no_weight = (0.0, 0.0, 0.0)
+    wrench = into_body(model, hull_bias_force(model, into_hull(model, nu), no_weight))
     out = np.empty(6)
-    u, v, w, p, q, r = nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
-    out[0], out[1], out[2], out[3], out[4], out[5] = gyroscopic(
-        model.bodies, HULL, u, v, w, p, q, r
-    )
     for k in range(6):
-        out[k] += damping(model.hull, k, nu_r[k])
+        out[k] = wrench[k]
     return out
 
 
 @kernel
 def hull_hydrodynamic_wrench(model, nu_r, nu_r_dot):
     """What the water does TO the hull (6,): -(M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r)."""
-    matrix = np.empty((1, 36))
-    for k in range(36):
-        matrix[0, k] = model.hull[ADDED_MASS + k // 6, k % 6]
-    u, v, w, p, q, r = nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5]
+    nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
+    rate = (nu_r_dot[0], nu_r_dot[1], nu_r_dot[2], nu_r_dot[3], nu_r_dot[4], nu_r_dot[5])
+    inertia = load_inertia(model, np.int64(model[HULL, JOINTS]) + 1, ADDED_MASS)
+    wrench = plus(times(inertia, rate), plus(gyroscopic(inertia, nu), hull_damping(model, nu)))
     out = np.empty(6)
-    out[0], out[1], out[2], out[3], out[4], out[5] = gyroscopic(matrix, HULL, u, v, w, p, q, r)
     for k in range(6):
-        total = out[k] + damping(model.hull, k, nu_r[k])
-        for j in range(6):
-            total += matrix[0, 6 * k + j] * nu_r_dot[j]
-        out[k] = -total
+        out[k] = -wrench[k]
     return out
-
-
-@inner
-def damping(hull, k, x):
-    """Linear and quadratic damping of one degree of freedom: (d_k + d_kk |x|) x."""
-    return (hull[LINEAR, k] + hull[QUADRATIC, k] * math.fabs(x)) * x

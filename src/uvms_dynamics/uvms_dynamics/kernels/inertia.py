@@ -1,97 +1,177 @@
-"""Move a general symmetric 6x6 inertia to the parent's frame, in scalars."""
+"""Symmetric 6x6 inertias in 21 numbers: load, add, move to the parent's frame, solve."""
 
 from uvms_dynamics.kernels.jit import inner
-from uvms_dynamics.kernels.layout import ANGULAR_BLOCK, LINEAR_BLOCK, TREE_POSITION
-from uvms_dynamics.kernels.spatial import cross, load3, turn
+from uvms_dynamics.kernels.layout import COS, COS_TWIST, PLACE, SIN, SIN_TWIST
+from uvms_dynamics.kernels.spatial import cross, load3, load6, turned
 
 
 @inner
-def copy_inertia(bodies, work, i):
-    """Start an articulated or composite inertia with the body's own."""
-    for k in range(36):
-        work[i, k] = bodies[i, k]
+def load_inertia(table, i, k):
+    """Inertia in row i from column k on."""
+    return (
+        load6(table, i, k)
+        + load3(table, i, k + 6)
+        + load3(table, i, k + 9)
+        + load3(table, i, k + 12)
+        + load6(table, i, k + 15)
+    )
 
 
 @inner
-def add_to_parent(joints, work, i):
-    """I[i-1] += X^T I[i] X, X = [R^T, -R^T [p]x; 0, R^T], inertias in the workspace.
+def plus_inertia(a, b):
+    """Sum of two inertias."""
+    return (
+        a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5],
+        a[6] + b[6], a[7] + b[7], a[8] + b[8], a[9] + b[9], a[10] + b[10], a[11] + b[11],
+        a[12] + b[12], a[13] + b[13], a[14] + b[14], a[15] + b[15], a[16] + b[16], a[17] + b[17],
+        a[18] + b[18], a[19] + b[19], a[20] + b[20],
+    )  # fmt: skip
 
-    In blocks, I = [A, B; B^T, C] turned to the parent's axes becomes [A, B'; B'^T, C'] with
-    B' = B - A [p]x and C' = C - B^T [p]x + [p]x B'. Only the upper triangles of the diagonal
-    blocks are computed; the parent gets a full symmetric matrix.
+
+@inner
+def axis_force(inertia):
+    """U = I S (6,): the force of a unit turn about z, the last column."""
+    return inertia[8], inertia[11], inertia[14], inertia[17], inertia[19], inertia[20]
+
+
+@inner
+def released(inertia, u, inverse):
+    """I - U U^T / D: what is left of an inertia whose body is free to turn about z."""
+    s0, s1, s2 = inverse * u[0], inverse * u[1], inverse * u[2]
+    s3, s4, s5 = inverse * u[3], inverse * u[4], inverse * u[5]
+    i = inertia
+    return (
+        i[0] - s0 * u[0], i[1] - s0 * u[1], i[2] - s0 * u[2],
+        i[3] - s1 * u[1], i[4] - s1 * u[2], i[5] - s2 * u[2],
+        i[6] - s0 * u[3], i[7] - s0 * u[4], i[8] - s0 * u[5],
+        i[9] - s1 * u[3], i[10] - s1 * u[4], i[11] - s1 * u[5],
+        i[12] - s2 * u[3], i[13] - s2 * u[4], i[14] - s2 * u[5],
+        i[15] - s3 * u[3], i[16] - s3 * u[4], i[17] - s3 * u[5],
+        i[18] - s4 * u[4], i[19] - s4 * u[5], i[20] - s5 * u[5],
+    )  # fmt: skip
+
+
+@inner
+def inertia_to_parent(model, work, i, inertia):
+    """Inertia of frame i about the parent's origin, in its axes: X^T I X.
+
+    First to the parent's axes, [A, B; B^T, C] with R A R^T and so on, then to its origin:
+    [A, B'; B'^T, C'] with B' = B - A [p]x and C' = C - B^T [p]x + [p]x B'.
     """
-    p0, p1, p2 = load3(joints, i, TREE_POSITION)
-    a00, a01, a02, a11, a12, a22 = _turned_symmetric(work, i, LINEAR_BLOCK)
-    c00, c01, c02, c11, c12, c22 = _turned_symmetric(work, i, ANGULAR_BLOCK)
-    b00, b01, b02, b10, b11, b12, b20, b21, b22 = _turned_coupling(work, i)
+    a = _turned_symmetric(model, work, i, inertia[:6])
+    b00, b01, b02, b10, b11, b12, b20, b21, b22 = _turned_coupling(model, work, i, inertia[6:15])
+    c00, c01, c02, c11, c12, c22 = _turned_symmetric(model, work, i, inertia[15:])
+    p = load3(model, i, PLACE)
     # rows of -A [p]x are p x (rows of A)
-    d00, d01, d02 = cross(p0, p1, p2, a00, a01, a02)
-    d10, d11, d12 = cross(p0, p1, p2, a01, a11, a12)
-    d20, d21, d22 = cross(p0, p1, p2, a02, a12, a22)
-    # rows of -B^T [p]x are p x (columns of B)
-    e00, e01, e02 = cross(p0, p1, p2, b00, b10, b20)
-    _, e11, e12 = cross(p0, p1, p2, b01, b11, b21)
-    _, _, e22 = cross(p0, p1, p2, b02, b12, b22)
-    b00, b01, b02 = b00 + d00, b01 + d01, b02 + d02
-    b10, b11, b12 = b10 + d10, b11 + d11, b12 + d12
-    b20, b21, b22 = b20 + d20, b21 + d21, b22 + d22
-    # columns of [p]x B' are p x (columns of B')
-    g00, _, _ = cross(p0, p1, p2, b00, b10, b20)
-    g01, g11, _ = cross(p0, p1, p2, b01, b11, b21)
-    g02, g12, g22 = cross(p0, p1, p2, b02, b12, b22)
-    c00, c01, c02 = c00 + e00 + g00, c01 + e01 + g01, c02 + e02 + g02
-    c11, c12, c22 = c11 + e11 + g11, c12 + e12 + g12, c22 + e22 + g22
-    _add_symmetric(work, i - 1, LINEAR_BLOCK, a00, a01, a02, a11, a12, a22)
-    _add_symmetric(work, i - 1, ANGULAR_BLOCK, c00, c01, c02, c11, c12, c22)
-    _add_coupling(work, i - 1, b00, b01, b02, b10, b11, b12, b20, b21, b22)
+    d00, d01, d02 = cross(p, (a[0], a[1], a[2]))
+    d10, d11, d12 = cross(p, (a[1], a[3], a[4]))
+    d20, d21, d22 = cross(p, (a[2], a[4], a[5]))
+    d00, d01, d02 = b00 + d00, b01 + d01, b02 + d02
+    d10, d11, d12 = b10 + d10, b11 + d11, b12 + d12
+    d20, d21, d22 = b20 + d20, b21 + d21, b22 + d22
+    # rows of -B^T [p]x are p x (columns of B), columns of [p]x B' are p x (columns of B')
+    p0, p1, p2 = p
+    c00 += p1 * (b20 + d20) - p2 * (b10 + d10)
+    c11 += p2 * (b01 + d01) - p0 * (b21 + d21)
+    c22 += p0 * (b12 + d12) - p1 * (b02 + d02)
+    c01 += (p2 * b00 - p0 * b20) + (p1 * d21 - p2 * d11)
+    c02 += (p0 * b10 - p1 * b00) + (p1 * d22 - p2 * d12)
+    c12 += (p0 * b11 - p1 * b01) + (p2 * d02 - p0 * d22)
+    return (
+        *a,
+        d00, d01, d02, d10, d11, d12, d20, d21, d22,
+        c00, c01, c02, c11, c12, c22,
+    )  # fmt: skip
 
 
 @inner
-def _turned_symmetric(work, i, k):
-    """Upper triangle of R S R^T of the diagonal block S that starts at column k."""
-    s00, s01, s02 = work[i, k], work[i, k + 1], work[i, k + 2]
-    s11, s12, s22 = work[i, k + 7], work[i, k + 8], work[i, k + 14]
-    x00, x10, x20 = turn(work, i, s00, s01, s02)
-    x01, x11, x21 = turn(work, i, s01, s11, s12)
-    x02, x12, x22 = turn(work, i, s02, s12, s22)
-    y00, y01, y02 = turn(work, i, x00, x01, x02)
-    _, y11, y12 = turn(work, i, x10, x11, x12)
-    _, _, y22 = turn(work, i, x20, x21, x22)
-    return y00, y01, y02, y11, y12, y22
+def _turned_symmetric(model, work, i, block):
+    """R S R^T of a diagonal block: first Rz(q), then Rx(twist)."""
+    s00, s01, s02, s11, s12, s22 = block
+    c, s = work[i, COS], work[i, SIN]
+    s00, s01, s11 = _turned_square(c, s, s00, s01, s11)
+    s02, s12 = turned(c, s, s02, s12)
+    c, s = model[i, COS_TWIST], model[i, SIN_TWIST]
+    s11, s12, s22 = _turned_square(c, s, s11, s12, s22)
+    s01, s02 = turned(c, s, s01, s02)
+    return s00, s01, s02, s11, s12, s22
 
 
 @inner
-def _turned_coupling(work, i):
-    """R B R^T of the upper right block B."""
-    x00, x10, x20 = turn(work, i, work[i, 3], work[i, 9], work[i, 15])
-    x01, x11, x21 = turn(work, i, work[i, 4], work[i, 10], work[i, 16])
-    x02, x12, x22 = turn(work, i, work[i, 5], work[i, 11], work[i, 17])
-    y00, y01, y02 = turn(work, i, x00, x01, x02)
-    y10, y11, y12 = turn(work, i, x10, x11, x12)
-    y20, y21, y22 = turn(work, i, x20, x21, x22)
-    return y00, y01, y02, y10, y11, y12, y20, y21, y22
+def _turned_coupling(model, work, i, block):
+    """R B R^T of the coupling block."""
+    b00, b01, b02, b10, b11, b12, b20, b21, b22 = block
+    c, s = work[i, COS], work[i, SIN]
+    b00, b01, b10, b11 = _turned_block(c, s, b00, b01, b10, b11)
+    b02, b12 = turned(c, s, b02, b12)
+    b20, b21 = turned(c, s, b20, b21)
+    c, s = model[i, COS_TWIST], model[i, SIN_TWIST]
+    b11, b12, b21, b22 = _turned_block(c, s, b11, b12, b21, b22)
+    b01, b02 = turned(c, s, b01, b02)
+    b10, b20 = turned(c, s, b10, b20)
+    return b00, b01, b02, b10, b11, b12, b20, b21, b22
 
 
 @inner
-def _add_symmetric(work, i, k, s00, s01, s02, s11, s12, s22):
-    work[i, k] += s00
-    work[i, k + 1] += s01
-    work[i, k + 2] += s02
-    work[i, k + 6] += s01
-    work[i, k + 7] += s11
-    work[i, k + 8] += s12
-    work[i, k + 12] += s02
-    work[i, k + 13] += s12
-    work[i, k + 14] += s22
+def _turned_square(c, s, x00, x01, x11):
+    """A symmetric 2x2 block, turned: its mean stays, its deviator turns by twice the angle."""
+    mean, half = 0.5 * (x00 + x11), 0.5 * (x00 - x11)
+    half, x01 = turned(c * c - s * s, 2.0 * c * s, half, x01)
+    return mean + half, x01, mean - half
 
 
 @inner
-def _add_coupling(work, i, b00, b01, b02, b10, b11, b12, b20, b21, b22):
-    """Add B to the upper right block and B^T to the lower left one."""
-    row = work[i]
-    row[3], row[4], row[5] = row[3] + b00, row[4] + b01, row[5] + b02
-    row[9], row[10], row[11] = row[9] + b10, row[10] + b11, row[11] + b12
-    row[15], row[16], row[17] = row[15] + b20, row[16] + b21, row[17] + b22
-    row[18], row[19], row[20] = row[18] + b00, row[19] + b10, row[20] + b20
-    row[24], row[25], row[26] = row[24] + b01, row[25] + b11, row[26] + b21
-    row[30], row[31], row[32] = row[30] + b02, row[31] + b12, row[32] + b22
+def _turned_block(c, s, x00, x01, x10, x11):
+    """Any 2x2 block, turned: its skew part stays."""
+    skew = 0.5 * (x01 - x10)
+    x00, x01, x11 = _turned_square(c, s, x00, 0.5 * (x01 + x10), x11)
+    return x00, x01 + skew, x01 - skew, x11
+
+
+@inner
+def solve_inertia(inertia, force):
+    """Motion (v, w) with I (v, w) = (f, n).
+
+    By blocks: with X = A^-1 B the Schur complement S = C - B^T X gives w = S^-1 (n - X^T f) and
+    v = A^-1 f - X w. Each block has one unit and is well conditioned, so that adjugates, one
+    division each, are as exact as a factorization and leave the processor no chain to wait for.
+    """
+    b00, b01, b02, b10, b11, b12, b20, b21, b22 = inertia[6:15]
+    c00, c01, c02, c11, c12, c22 = inertia[15:]
+    f0, f1, f2, n0, n1, n2 = force
+    a = _inverse(inertia[:6])
+    x00, x10, x20 = _product(a, b00, b10, b20)
+    x01, x11, x21 = _product(a, b01, b11, b21)
+    x02, x12, x22 = _product(a, b02, b12, b22)
+    y0, y1, y2 = _product(a, f0, f1, f2)
+    c00 -= b00 * x00 + b10 * x10 + b20 * x20
+    c01 -= b00 * x01 + b10 * x11 + b20 * x21
+    c02 -= b00 * x02 + b10 * x12 + b20 * x22
+    c11 -= b01 * x01 + b11 * x11 + b21 * x21
+    c12 -= b01 * x02 + b11 * x12 + b21 * x22
+    c22 -= b02 * x02 + b12 * x12 + b22 * x22
+    n0 -= x00 * f0 + x10 * f1 + x20 * f2
+    n1 -= x01 * f0 + x11 * f1 + x21 * f2
+    n2 -= x02 * f0 + x12 * f1 + x22 * f2
+    w0, w1, w2 = _product(_inverse((c00, c01, c02, c11, c12, c22)), n0, n1, n2)
+    v0 = y0 - (x00 * w0 + x01 * w1 + x02 * w2)
+    v1 = y1 - (x10 * w0 + x11 * w1 + x12 * w2)
+    v2 = y2 - (x20 * w0 + x21 * w1 + x22 * w2)
+    return v0, v1, v2, w0, w1, w2
+
+
+@inner
+def _inverse(block):
+    """Inverse of a symmetric 3x3 matrix, upper triangles row by row."""
+    a00, a01, a02, a11, a12, a22 = block
+    m00, m01, m02 = a11 * a22 - a12 * a12, a02 * a12 - a01 * a22, a01 * a12 - a02 * a11
+    m11, m12, m22 = a00 * a22 - a02 * a02, a01 * a02 - a00 * a12, a00 * a11 - a01 * a01
+    scale = 1.0 / (a00 * m00 + a01 * m01 + a02 * m02)
+    return scale * m00, scale * m01, scale * m02, scale * m11, scale * m12, scale * m22
+
+
+@inner
+def _product(block, x, y, z):
+    """Symmetric 3x3 matrix times vector."""
+    s00, s01, s02, s11, s12, s22 = block
+    return s00 * x + s01 * y + s02 * z, s01 * x + s11 * y + s12 * z, s02 * x + s12 * y + s22 * z

@@ -2,26 +2,30 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.hull import damping
+from uvms_dynamics.kernels.drag import resist
+from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import ACCELERATION, DOWN, FORCE, HULL, ROTOR, VELOCITY
+from uvms_dynamics.kernels.layout import FORCE, HULL, INERTIA, ROTOR
 from uvms_dynamics.kernels.motion import (
-    bias_force,
-    carry_down,
-    carry_velocity,
     down_in_body,
+    hull_bias_force,
+    into_body,
+    into_hull,
+    link_velocity,
     make_workspace,
-    resist,
+    set_angle,
+    set_link_force,
+    to_hull,
+    velocity_product,
 )
 from uvms_dynamics.kernels.spatial import (
-    add,
     force_to_parent,
-    load,
+    load6,
     motion_to_child,
-    set_rotation,
-    store,
-    store3,
+    plus,
+    store6,
     times,
+    to_child,
 )
 
 
@@ -34,18 +38,16 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     the derivative of its components; quat (4,); q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
     """
     n = q.shape[0]
-    work = make_workspace(n)
-    k0, k1, k2 = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    store3(work, HULL, DOWN, k0, k1, k2)
-    forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
-    bias_force(model.bodies, work, HULL)
-    _inertia_force(model.bodies, work, HULL)
-    _carry_inward(model.joints, work, n)
-    out = np.empty(6 + n)
-    for i in range(1, n + 1):
-        out[5 + i] = work[i, FORCE + 5] + model.joints[i, ROTOR] * q_ddot[i - 1]
+    work, out = make_workspace(model), np.empty(6 + n)
+    down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
+    v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
+    _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot)
+    force = plus(hull_bias_force(model, v, down), times(load_inertia(model, HULL, INERTIA), a))
+    force = into_body(model, plus(force, _carry_inward(model, work, n)))
     for k in range(6):
-        out[k] = work[0, FORCE + k] + damping(model.hull, k, nu_r[k])
+        out[k] = force[k]
+    for i in range(1, n + 1):
+        out[5 + i] = work[i, FORCE + 5] + model[i, ROTOR] * q_ddot[i - 1]
     return out
 
 
@@ -58,49 +60,43 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     `inverse_dynamics`; body frame.
     """
     n = q.shape[0]
-    work = make_workspace(n)
-    store3(work, HULL, DOWN, 0.0, 0.0, 0.0)  # no down, no weight
-    forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work)
-    store(work, HULL, FORCE, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    _carry_inward(model.joints, work, n)
-    out = np.empty(6)
+    work, out = make_workspace(model), np.empty(6)
+    v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
+    no_weight = (0.0, 0.0, 0.0)
+    _forces_of_links(model, work, no_weight, v, a, q, q_dot, q_ddot)
+    force = into_body(model, _carry_inward(model, work, n))
     for k in range(6):
-        out[k] = -work[0, FORCE + k]
+        out[k] = -force[k]
     return out
 
 
 @inner
-def forces_of_links(model, nu_r, nu_r_dot, q, q_dot, q_ddot, work):
-    """Motion of each link and the force that it needs for it, I a + C v - drag - weight."""
-    bodies, joints = model.bodies, model.joints
-    for k in range(6):
-        work[0, VELOCITY + k] = nu_r[k]
-        work[0, ACCELERATION + k] = nu_r_dot[k]
+def _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot):
+    """Force that each link needs for its motion, I a + C v - drag - weight, from the hull out."""
     for i in range(1, q.shape[0] + 1):
-        set_rotation(joints, work, i, q[i - 1])
-        carry_down(work, i)
-        x0, x1, y0, y1 = carry_velocity(joints, work, i, q_dot[i - 1])
-        a0, a1, a2, b0, b1, b2 = load(work, i - 1, ACCELERATION)
-        a0, a1, a2, b0, b1, b2 = motion_to_child(joints, work, i, a0, a1, a2, b0, b1, b2)
-        b2 += q_ddot[i - 1]
-        store(work, i, ACCELERATION, a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2)
-        bias_force(bodies, work, i)
-        _inertia_force(bodies, work, i)
-        resist(model.strips, model.strip_start, model.drag_coefficient, work, i)
+        set_angle(model, work, i, q[i - 1])
+        v = link_velocity(model, work, i, v, q_dot[i - 1])
+        down = to_child(model, work, i, down)
+        a0, a1, a2, b0, b1, b2 = motion_to_child(model, work, i, a)
+        x0, x1, y0, y1 = velocity_product(v, q_dot[i - 1])
+        a = (a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2 + q_ddot[i - 1])
+        inertia_force = times(load_inertia(model, i, INERTIA), a)
+        set_link_force(model, work, i, v, down, inertia_force)
+    resist(model, work)
 
 
 @inner
-def _inertia_force(bodies, work, i):
-    """Add I a of body i to its force."""
-    a0, a1, a2, b0, b1, b2 = load(work, i, ACCELERATION)
-    f0, f1, f2, n0, n1, n2 = times(bodies, i, a0, a1, a2, b0, b1, b2)
-    add(work, i, FORCE, f0, f1, f2, n0, n1, n2)
-
-
-@inner
-def _carry_inward(joints, work, n):
-    """Sum the forces from the tip to the hull, eq. (14)-(15); row i: through joint i."""
+def _carry_inward(model, work, n):
+    """Sum of the links' forces at the hull, eq. (14)-(15); FORCE of row i: through joint i."""
+    force = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(n, 0, -1):
-        f0, f1, f2, n0, n1, n2 = load(work, i, FORCE)
-        f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2)
-        add(work, i - 1, FORCE, f0, f1, f2, n0, n1, n2)
+        force = plus(load6(work, i, FORCE), force)
+        store6(work, i, FORCE, force)
+        force = force_to_parent(model, work, i, force)
+    return force
+
+
+@inner
+def _six(a):
+    """The six numbers of an array."""
+    return a[0], a[1], a[2], a[3], a[4], a[5]

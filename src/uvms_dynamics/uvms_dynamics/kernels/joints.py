@@ -1,9 +1,8 @@
 """Friction and end stops of the joints."""
 
-import math
-
 import numpy as np
 
+from uvms_dynamics.kernels.arithmetic import hyperbolic_tangent
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     COULOMB,
@@ -14,6 +13,7 @@ from uvms_dynamics.kernels.layout import (
     VISCOUS,
     WIDTH,
 )
+from uvms_dynamics.kernels.primitives import larger
 
 
 @kernel
@@ -25,23 +25,21 @@ def joint_passive_torque(model, q, q_dot):
     """
     out = np.empty(q.shape[0])
     for i in range(q.shape[0]):
-        out[i] = passive_torque(model.joints, i + 1, q[i], q_dot[i])
+        out[i] = passive_torque(model, i + 1, q[i], q_dot[i])
     return out
 
 
 @inner
-def passive_torque(joints, i, angle, rate):
+def passive_torque(model, i, angle, rate):
     """The same of the joint in row i."""
-    torque = -joints[i, VISCOUS] * rate - joints[i, COULOMB] * math.tanh(rate / joints[i, WIDTH])
-    over, under = angle - joints[i, UPPER], joints[i, LOWER] - angle
-    if over > 0.0:
-        torque -= _stop(joints, i, over, rate)
-    elif under > 0.0:
-        torque += _stop(joints, i, under, -rate)
-    return torque
+    friction = model[i, VISCOUS] * rate
+    friction += model[i, COULOMB] * hyperbolic_tangent(rate / model[i, WIDTH])
+    over, under = angle - model[i, UPPER], model[i, LOWER] - angle
+    return _stop(model, i, under, -rate) - _stop(model, i, over, rate) - friction
 
 
 @inner
-def _stop(joints, i, depth, speed):
-    """Push of an end stop pressed in by depth, rad, at a speed, rad/s."""
-    return max(0.0, joints[i, STIFFNESS] * depth * (1.0 + joints[i, DISSIPATION] * speed))
+def _stop(model, i, depth, speed):
+    """Push of an end stop pressed in by depth, rad, at a speed, rad/s; none where depth < 0."""
+    push = model[i, STIFFNESS] * larger(depth, 0.0)
+    return push * larger(1.0 + model[i, DISSIPATION] * speed, 0.0)

@@ -1,8 +1,9 @@
-"""Columns of the flat tables that the kernels read and write.
+"""Columns of the two tables that the kernels work on: the model and the workspace.
 
-Few wide tables instead of many narrow ones: numba counts references of every array of a tuple at
-every call, which cost more than the arithmetic. Row i belongs to body i (0: the hull) and to the
-joint that moves it; rows of joints have an unused row 0, so that one index serves all tables.
+All parameters of a vehicle are one table, because numba unpacks every array that it is called with:
+seven of them in a tuple took longer than the dynamics. Row i belongs to body i (0: the hull) and
+to the joint that moves it. An inertia is a symmetric 6x6 matrix [A, B; B^T, C] in 21 numbers: the
+upper triangle of A row by row, B row by row, the upper triangle of C.
 
 The numbers are np.int64 because numba compiles a function anew for every literal int it is called
 with: a third of the time to compile.
@@ -10,43 +11,51 @@ with: a third of the time to compile.
 
 import numpy as np
 
-HULL = np.int64(0)  # row of the hull
+# Model (rows, 48): bodies 0..n, fixtures, then drag cylinders and coefficients, counted by item.
+# Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin
+INERTIA = np.int64(0)  # 21
+NET_WEIGHT = np.int64(21)  # m g - rho V g
+NET_MOMENT = np.int64(22)  # 3: m g r_g - rho V g r_b
 
-# Model.bodies (n+1, 40)
-INERTIA = np.int64(0)  # 36: 6x6 rigid body and added mass about the frame's origin, row by row
-LINEAR_BLOCK, ANGULAR_BLOCK, LAST_ROW = np.int64(0), np.int64(21), np.int64(30)  # in it
-NET_WEIGHT = np.int64(36)  # m g - rho V g
-NET_MOMENT = np.int64(37)  # 3: m g r_g - rho V g r_b
-BODY_COLUMNS = np.int64(40)
+# The joint that moves the body, in rows 1..n
+PLACE = np.int64(25)  # 3: joint frame's origin in the parent's
+COS_TWIST, SIN_TWIST = np.int64(28), np.int64(29)  # Rx(twist) comes before the joint's Rz
+OFFSET = np.int64(30)  # added to the joint angle
+ROTOR = np.int64(31)  # rotor inertia
+VISCOUS, COULOMB, WIDTH = np.arange(32, 35, dtype=np.int64)  # friction
+LOWER, UPPER, STIFFNESS, DISSIPATION = np.arange(35, 39, dtype=np.int64)  # end stops
+EFFORT = np.int64(39)  # greatest torque
+DRAG_BEGIN, DRAG_END = np.int64(40), np.int64(41)  # its drag cylinders
 
-# Model.joints (n+1, 22)
-TREE_ROTATION = np.int64(0)  # 9: joint frame to parent at joint angle zero, row by row
-TREE_POSITION = np.int64(9)  # 3: joint frame's origin in the parent's
-OFFSET = np.int64(12)  # added to the joint angle
-ROTOR = np.int64(13)  # rotor inertia
-VISCOUS, COULOMB, WIDTH = np.arange(14, 17, dtype=np.int64)  # friction
-LOWER, UPPER, STIFFNESS, DISSIPATION = np.arange(17, 21, dtype=np.int64)  # end stops
-EFFORT = np.int64(21)  # greatest torque
-JOINT_COLUMNS = np.int64(22)
+# The hull, in row 0 instead
+HULL = np.int64(0)
+DAMPING, QUADRATIC = np.int64(25), np.int64(31)  # 6 each, body axes
+COS_TURN, SIN_TURN = np.int64(37), np.int64(38)  # hull frame in the body frame: Rz(turn)
+JOINTS = np.int64(39)  # n
+CYLINDERS = np.int64(40)  # first item of the drag cylinders
+GROUPS, STRIPS = np.int64(41), np.int64(42)  # how many of eight cylinders; strips on each
+CROSS_FLOW, AXIAL = np.int64(43), np.int64(44)  # first items of the drag coefficients
 
-# Model.hull (8, 6)
-LINEAR, QUADRATIC = np.int64(0), np.int64(1)  # rows of damping
-ADDED_MASS = np.int64(2)  # 6 rows
+# Fixtures, in row n + 1
+TOOL_ROTATION, TOOL_POSITION = np.int64(0), np.int64(9)  # in the last link's frame
+ADDED_MASS = np.int64(12)  # 21: of the hull alone, about the body origin, body axes
 
-# Model.strips (s, 8): place, axis, then
-STRIP_PLACE, STRIP_AXIS = np.int64(0), np.int64(3)
-STRIP_AREA = np.int64(6)  # 1/2 rho x diameter x length
-STRIP_REYNOLDS = np.int64(7)  # diameter / kinematic viscosity
+# Drag cylinders, in groups of eight: each of these numbers of all eight, then the next
+CENTER, AXIS = np.int64(0), np.int64(3)
+CROSS_REYNOLDS, AXIAL_REYNOLDS = np.int64(6), np.int64(7)  # Reynolds number of 1 m/s
+AXIAL_AREA = np.int64(8)  # 1/2 rho x wetted surface
+STRIP = np.int64(9)  # pairs: place along the axis, 1/2 rho x diameter x length
 
-# Model.tool (4, 3): rows of the rotation, then the position
-TOOL_POSITION = np.int64(3)
+# Coefficients of drag: pairs (a, b) of C(Re) = a + b Re in the cells of `drag_table`
 
-# Workspace (n+1, 74); its first 36 columns are an articulated or composite inertia
-ROTATION = np.int64(36)  # 9: frame i to its parent
-VELOCITY = np.int64(45)  # 6
-ACCELERATION = np.int64(51)  # 6
-FORCE = np.int64(57)  # 6: force on, or bias force of, the body
-DOWN = np.int64(63)  # 3: unit vector downward in the frame
-AXIS_FORCE = np.int64(66)  # 6: U = I S of the articulated body
-INVERSE, REST = np.int64(72), np.int64(73)  # 1 / D and the torque that is left for the joint
-WORK_COLUMNS = np.int64(74)
+MODEL_COLUMNS = np.int64(48)
+
+# Workspace (rows, 21); after rows 0..n slots of the drag cylinders, see `drag`. Row i: of joint i and the link that it moves, in its frame
+COS, SIN = np.int64(0), np.int64(1)  # of the joint angle with its offset
+RATE = np.int64(2)  # of the joint; in the end its acceleration
+TORQUE = np.int64(3)  # of the joint; what is left of it for the joint's own acceleration
+VELOCITY_PRODUCT = np.int64(4)  # 4: V x S q_dot without its two zeros
+FORCE = np.int64(8)  # 6: force on, or bias force of, the body
+AXIS_FORCE = np.int64(14)  # 6: U = I S of the articulated body
+INVERSE = np.int64(20)  # 1 / D of the articulated body
+WORK_COLUMNS = np.int64(21)

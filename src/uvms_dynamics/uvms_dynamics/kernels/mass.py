@@ -2,11 +2,16 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.inertia import add_to_parent, copy_inertia
+from uvms_dynamics.kernels.inertia import (
+    axis_force,
+    inertia_to_parent,
+    load_inertia,
+    plus_inertia,
+)
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import HULL, LAST_ROW, ROTOR
-from uvms_dynamics.kernels.motion import make_workspace
-from uvms_dynamics.kernels.spatial import force_to_parent, load, set_rotation
+from uvms_dynamics.kernels.layout import HULL, INERTIA, ROTOR
+from uvms_dynamics.kernels.motion import into_body, into_hull, make_workspace, set_angle
+from uvms_dynamics.kernels.spatial import force_to_parent, load6, times
 
 
 @kernel
@@ -17,33 +22,41 @@ def mass_matrix(model, q):
     Composite-rigid-body algorithm (Featherstone 2008, sec. 6.2) with a general symmetric inertia.
     """
     n = q.shape[0]
-    bodies, joints = model.bodies, model.joints
-    work, matrix = make_workspace(n), np.empty((6 + n, 6 + n))
-    copy_inertia(bodies, work, HULL)
+    work, matrix = make_workspace(model), np.empty((6 + n, 6 + n))
+    none = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    inertia = none + none + none + (0.0, 0.0, 0.0)
     for i in range(1, n + 1):
-        set_rotation(joints, work, i, q[i - 1])
-        copy_inertia(bodies, work, i)
+        set_angle(model, work, i, q[i - 1])
     for i in range(n, 0, -1):
-        _joint_row(joints, work, i, matrix)
-        add_to_parent(joints, work, i)
-    for row in range(6):
-        for column in range(6):
-            matrix[row, column] = work[0, 6 * row + column]
+        inertia = plus_inertia(load_inertia(model, i, INERTIA), inertia)
+        _set_joint_row(model, work, i, axis_force(inertia), matrix)
+        inertia = inertia_to_parent(model, work, i, inertia)
+    inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)
+    unit = np.eye(6)
+    for k in range(6):
+        force = times(inertia, into_hull(model, load6(unit, k, 0)))
+        _set_hull_columns(model, matrix, k, force)
+        for j in range(k):  # symmetric to the last bit
+            matrix[k, j] = matrix[j, k]
     return matrix
 
 
 @inner
-def _joint_row(joints, work, i, matrix):
+def _set_joint_row(model, work, i, force, matrix):
     """Row and column of joint i: the force of a unit acceleration, carried to the base."""
-    f0, f1, f2, n0, n1, n2 = load(work, i, LAST_ROW)
-    matrix[5 + i, 5 + i] = n2 + joints[i, ROTOR]
+    matrix[5 + i, 5 + i] = force[5] + model[i, ROTOR]
     for j in range(i, 0, -1):
-        f0, f1, f2, n0, n1, n2 = force_to_parent(joints, work, j, f0, f1, f2, n0, n1, n2)
+        force = force_to_parent(model, work, j, force)
         if j > 1:
-            matrix[5 + i, 4 + j] = matrix[4 + j, 5 + i] = n2
-    matrix[0, 5 + i] = matrix[5 + i, 0] = f0
-    matrix[1, 5 + i] = matrix[5 + i, 1] = f1
-    matrix[2, 5 + i] = matrix[5 + i, 2] = f2
-    matrix[3, 5 + i] = matrix[5 + i, 3] = n0
-    matrix[4, 5 + i] = matrix[5 + i, 4] = n1
-    matrix[5, 5 + i] = matrix[5 + i, 5] = n2
+            matrix[5 + i, 4 + j] = matrix[4 + j, 5 + i] = force[5]
+    _set_hull_columns(model, matrix, 5 + i, force)
+    for k in range(6):
+        matrix[k, 5 + i] = matrix[5 + i, k]
+
+
+@inner
+def _set_hull_columns(model, matrix, row, force):
+    """First six columns of a row: a force on the hull, in body axes."""
+    force = into_body(model, force)
+    for k in range(6):
+        matrix[row, k] = force[k]

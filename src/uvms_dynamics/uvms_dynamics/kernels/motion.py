@@ -1,27 +1,48 @@
-"""Steps that forward and inverse dynamics share: what link i goes through and feels."""
+"""Steps that forward and inverse dynamics share: what hull and links go through and feel."""
 
 import numpy as np
 
-from uvms_dynamics.kernels.drag import strip_drag
+from uvms_dynamics.kernels.arithmetic import sine_cosine
+from uvms_dynamics.kernels.drag import SLOT_NUMBERS, meet_water
+from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import DOWN, FORCE, VELOCITY, WORK_COLUMNS
+from uvms_dynamics.kernels.lanes import LANES
+from uvms_dynamics.kernels.layout import (
+    COS,
+    COS_TURN,
+    DAMPING,
+    FORCE,
+    GROUPS,
+    HULL,
+    INERTIA,
+    JOINTS,
+    OFFSET,
+    QUADRATIC,
+    SIN,
+    SIN_TURN,
+    WORK_COLUMNS,
+)
+from uvms_dynamics.kernels.primitives import size
 from uvms_dynamics.kernels.spatial import (
-    add,
+    angular,
     gyroscopic,
-    load,
-    load3,
+    linear,
+    load6,
+    minus,
     motion_to_child,
-    store,
-    store3,
-    turn_back,
+    pair,
+    plus,
+    store6,
+    turned,
     weight,
 )
 
 
 @kernel
-def make_workspace(n):
-    """Scratch table (n+1, ..) of an arm of n joints; its contents do not outlive a call."""
-    return np.empty((n + 1, WORK_COLUMNS))
+def make_workspace(model):
+    """Scratch table (rows, 21) for a model; its contents do not outlive a call."""
+    slots = SLOT_NUMBERS * LANES * np.int64(model[HULL, GROUPS])
+    return np.zeros((np.int64(model[HULL, JOINTS]) + 1 - (-slots // WORK_COLUMNS), WORK_COLUMNS))
 
 
 @inner
@@ -31,37 +52,82 @@ def down_in_body(x, y, z, w):
 
 
 @inner
-def carry_velocity(joints, work, i, rate):
-    """Velocity of link i from its parent's, eq. (2)-(7); returns V x S q_dot's four parts."""
-    v0, v1, v2, w0, w1, w2 = load(work, i - 1, VELOCITY)
-    v0, v1, v2, w0, w1, w2 = motion_to_child(joints, work, i, v0, v1, v2, w0, w1, w2)
-    store(work, i, VELOCITY, v0, v1, v2, w0, w1, w2 + rate)
-    return rate * v1, -rate * v0, rate * w1, -rate * w0
+def to_hull(model, a):
+    """Components in the hull's frame of a vector of the body frame: Rz(turn)^T a."""
+    x, y = turned(model[HULL, COS_TURN], -model[HULL, SIN_TURN], a[0], a[1])
+    return x, y, a[2]
 
 
 @inner
-def carry_down(work, i):
-    """Down direction in frame i."""
-    k0, k1, k2 = load3(work, i - 1, DOWN)
-    k0, k1, k2 = turn_back(work, i, k0, k1, k2)
-    store3(work, i, DOWN, k0, k1, k2)
+def to_body(model, a):
+    """Components in the body frame of a vector of the hull's frame."""
+    x, y = turned(model[HULL, COS_TURN], model[HULL, SIN_TURN], a[0], a[1])
+    return x, y, a[2]
 
 
 @inner
-def bias_force(bodies, work, i):
-    """Set the force of body i to C(v) v less weight and buoyancy."""
-    v0, v1, v2, w0, w1, w2 = load(work, i, VELOCITY)
-    f0, f1, f2, n0, n1, n2 = gyroscopic(bodies, i, v0, v1, v2, w0, w1, w2)
-    store(work, i, FORCE, f0, f1, f2, n0, n1, n2)
-    k0, k1, k2 = load3(work, i, DOWN)
-    f0, f1, f2, n0, n1, n2 = weight(bodies, i, k0, k1, k2)
-    add(work, i, FORCE, -f0, -f1, -f2, -n0, -n1, -n2)
+def into_hull(model, a):
+    """A motion or force of the body frame in the hull's."""
+    return pair(to_hull(model, linear(a)), to_hull(model, angular(a)))
 
 
 @inner
-def resist(strips, start, coefficient, work, i):
-    """Add the drag that link i must overcome to its force."""
-    v0, v1, v2, w0, w1, w2 = load(work, i, VELOCITY)
-    for s in range(start[i - 1], start[i]):
-        f0, f1, f2, n0, n1, n2 = strip_drag(strips, coefficient, s, v0, v1, v2, w0, w1, w2)
-        add(work, i, FORCE, -f0, -f1, -f2, -n0, -n1, -n2)
+def into_body(model, a):
+    """A motion or force of the hull's frame in the body frame."""
+    return pair(to_body(model, linear(a)), to_body(model, angular(a)))
+
+
+@inner
+def set_angle(model, work, i, angle):
+    """Sine and cosine of joint i with its offset."""
+    work[i, SIN], work[i, COS] = sine_cosine(angle + model[i, OFFSET])
+
+
+@inner
+def link_velocity(model, work, i, v, rate):
+    """Velocity of link i from its parent's, eq. (2)-(7)."""
+    v0, v1, v2, w0, w1, w2 = motion_to_child(model, work, i, v)
+    return v0, v1, v2, w0, w1, w2 + rate
+
+
+@inner
+def velocity_product(v, rate):
+    """V x S q_dot = (v0, v1, w0, w1): acceleration of a link for its turning in a moving frame.
+
+    Parts along z there are none.
+    """
+    return rate * v[1], -rate * v[0], rate * v[4], -rate * v[3]
+
+
+@inner
+def set_link_force(model, work, i, v, down, more):
+    """FORCE of link i: C(v) v less weight and buoyancy, and `more`; its drag follows."""
+    store6(work, i, FORCE, plus(_unresisted(model, i, v, down), more))
+    meet_water(model, work, i, v)
+
+
+@inner
+def hull_bias_force(model, v, down):
+    """C(v) v less weight and buoyancy, with damping, of the hull, in its frame."""
+    resisted = into_hull(model, hull_damping(model, into_body(model, v)))
+    return plus(_unresisted(model, HULL, v, down), resisted)
+
+
+@inner
+def hull_damping(model, nu):
+    """Linear and quadratic damping of each degree of freedom, (d_k + d_kk |x|) x; body axes."""
+    d, e = load6(model, HULL, DAMPING), load6(model, HULL, QUADRATIC)
+    return (
+        (d[0] + e[0] * size(nu[0])) * nu[0],
+        (d[1] + e[1] * size(nu[1])) * nu[1],
+        (d[2] + e[2] * size(nu[2])) * nu[2],
+        (d[3] + e[3] * size(nu[3])) * nu[3],
+        (d[4] + e[4] * size(nu[4])) * nu[4],
+        (d[5] + e[5] * size(nu[5])) * nu[5],
+    )
+
+
+@inner
+def _unresisted(model, i, v, down):
+    """C(v) v less weight and buoyancy of body i."""
+    return minus(gyroscopic(load_inertia(model, i, INERTIA), v), weight(model, i, down))

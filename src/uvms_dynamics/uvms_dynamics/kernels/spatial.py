@@ -1,37 +1,37 @@
-"""Spatial algebra in scalars: motions (v, omega), forces (f, n) and 6x6 inertias.
+"""Spatial algebra in tuples of numbers: vectors, motions, forces and symmetric 6x6 inertias.
 
-Everything is written out in scalars over flat tables, because numba then keeps the values in
-registers; small matrix products with their temporaries were 17 times slower. A motion or a force
-is six numbers, linear part first, about the origin of its frame; `i` is the row of its body.
-Notation: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 2.
+Everything is written out in numbers, because numba then keeps them in registers; small matrix
+products with their temporaries were 17 times slower. A vector is three numbers; a motion (v, omega)
+or a force (f, n) is six, linear part first, about the origin of its frame; an inertia
+[A, B; B^T, C] is 21: the upper triangle of A row by row, B row by row, the upper triangle of C.
+`i` is the row of a body. Notation: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 2.
+
+Every joint turns about the z axis of its frame, which lies in the parent's at Tr(p) Rx(twist); any
+chain can be written so (`uvms_dynamics.model`), and two turns in a plane cost less than one in
+space.
 """
-
-import math
-
-import numpy as np
 
 from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.kernels.layout import (
+    COS,
+    COS_TWIST,
     NET_MOMENT,
     NET_WEIGHT,
-    OFFSET,
-    ROTATION,
-    TREE_POSITION,
-    TREE_ROTATION,
+    PLACE,
+    SIN,
+    SIN_TWIST,
 )
 
-_ROW_0, _ROW_1, _ROW_2, _ROW_3, _ROW_4, _ROW_5 = (np.int64(6 * row) for row in range(6))
+
+@inner
+def load3(table, i, k):
+    """Vector in row i from column k on."""
+    return table[i, k], table[i, k + 1], table[i, k + 2]
 
 
 @inner
-def cross(a0, a1, a2, b0, b1, b2):
-    """Vector product a x b."""
-    return a1 * b2 - a2 * b1, a2 * b0 - a0 * b2, a0 * b1 - a1 * b0
-
-
-@inner
-def load(table, i, k):
-    """Six numbers of row i from column k on."""
+def load6(table, i, k):
+    """Motion or force in row i from column k on."""
     return (
         table[i, k],
         table[i, k + 1],
@@ -43,128 +43,122 @@ def load(table, i, k):
 
 
 @inner
-def load3(table, i, k):
-    """Three numbers of row i from column k on."""
-    return table[i, k], table[i, k + 1], table[i, k + 2]
+def store6(table, i, k, a):
+    """Write a motion or force to row i from column k on."""
+    table[i, k], table[i, k + 1], table[i, k + 2] = a[0], a[1], a[2]
+    table[i, k + 3], table[i, k + 4], table[i, k + 5] = a[3], a[4], a[5]
 
 
 @inner
-def store3(table, i, k, a0, a1, a2):
-    """Write three numbers to row i from column k on."""
-    table[i, k], table[i, k + 1], table[i, k + 2] = a0, a1, a2
+def cross(a, b):
+    """Vector product a x b."""
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @inner
-def store(table, i, k, a0, a1, a2, a3, a4, a5):
-    """Write six numbers to row i from column k on."""
-    store3(table, i, k, a0, a1, a2)
-    store3(table, i, k + 3, a3, a4, a5)
+def plus3(a, b):
+    """Sum of two vectors."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
 
 @inner
-def add(table, i, k, a0, a1, a2, a3, a4, a5):
-    """Add six numbers to row i from column k on."""
-    table[i, k] += a0
-    table[i, k + 1] += a1
-    table[i, k + 2] += a2
-    table[i, k + 3] += a3
-    table[i, k + 4] += a4
-    table[i, k + 5] += a5
+def plus(a, b):
+    """Sum of two motions or forces."""
+    return a[0] + b[0], a[1] + b[1], a[2] + b[2], a[3] + b[3], a[4] + b[4], a[5] + b[5]
 
 
 @inner
-def set_rotation(joints, work, i, angle):
-    """Rotation of frame i to its parent: the joint's fixed rotation, then Rz(angle)."""
-    turned = angle + joints[i, OFFSET]
-    c, s = math.cos(turned), math.sin(turned)
-    for row in range(3):
-        x, y, z = load3(joints, i, TREE_ROTATION + 3 * row)
-        store3(work, i, ROTATION + 3 * row, x * c + y * s, y * c - x * s, z)
+def minus(a, b):
+    """Difference of two motions or forces."""
+    return a[0] - b[0], a[1] - b[1], a[2] - b[2], a[3] - b[3], a[4] - b[4], a[5] - b[5]
 
 
 @inner
-def turn(work, i, x, y, z):
-    """Components in the parent frame of a vector of frame i: R x."""
-    return (
-        work[i, ROTATION] * x + work[i, ROTATION + 1] * y + work[i, ROTATION + 2] * z,
-        work[i, ROTATION + 3] * x + work[i, ROTATION + 4] * y + work[i, ROTATION + 5] * z,
-        work[i, ROTATION + 6] * x + work[i, ROTATION + 7] * y + work[i, ROTATION + 8] * z,
-    )
+def pair(a, b):
+    """A motion or force of its linear and its angular vector."""
+    return a[0], a[1], a[2], b[0], b[1], b[2]
 
 
 @inner
-def turn_back(work, i, x, y, z):
-    """Components in frame i of a vector of the parent frame: R^T x."""
-    return (
-        work[i, ROTATION] * x + work[i, ROTATION + 3] * y + work[i, ROTATION + 6] * z,
-        work[i, ROTATION + 1] * x + work[i, ROTATION + 4] * y + work[i, ROTATION + 7] * z,
-        work[i, ROTATION + 2] * x + work[i, ROTATION + 5] * y + work[i, ROTATION + 8] * z,
-    )
+def linear(a):
+    """The first vector of a motion or force."""
+    return a[0], a[1], a[2]
 
 
 @inner
-def motion_to_child(joints, work, i, v0, v1, v2, w0, w1, w2):
+def angular(a):
+    """The second vector of a motion or force."""
+    return a[3], a[4], a[5]
+
+
+@inner
+def turned(c, s, x, y):
+    """A vector of the plane, turned by an angle with this cosine and sine."""
+    return c * x - s * y, s * x + c * y
+
+
+@inner
+def to_parent(model, work, i, a):
+    """Components in the parent frame of a vector of frame i: Rx(twist) Rz(q) a."""
+    x, y = turned(work[i, COS], work[i, SIN], a[0], a[1])
+    y, z = turned(model[i, COS_TWIST], model[i, SIN_TWIST], y, a[2])
+    return x, y, z
+
+
+@inner
+def to_child(model, work, i, a):
+    """Components in frame i of a vector of the parent frame."""
+    y, z = turned(model[i, COS_TWIST], -model[i, SIN_TWIST], a[1], a[2])
+    x, y = turned(work[i, COS], -work[i, SIN], a[0], y)
+    return x, y, z
+
+
+@inner
+def motion_to_child(model, work, i, a):
     """Motion of the parent seen from frame i: (R^T (v + w x p), R^T w)."""
-    p0, p1, p2 = load3(joints, i, TREE_POSITION)
-    a0, a1, a2 = cross(w0, w1, w2, p0, p1, p2)
-    u0, u1, u2 = turn_back(work, i, v0 + a0, v1 + a1, v2 + a2)
-    x0, x1, x2 = turn_back(work, i, w0, w1, w2)
-    return u0, u1, u2, x0, x1, x2
+    moved = plus3(linear(a), cross(angular(a), load3(model, i, PLACE)))
+    return pair(to_child(model, work, i, moved), to_child(model, work, i, angular(a)))
 
 
 @inner
-def force_to_parent(joints, work, i, f0, f1, f2, n0, n1, n2):
+def force_to_parent(model, work, i, a):
     """Force on frame i about the parent's origin: (R f, R n + p x R f)."""
-    p0, p1, p2 = load3(joints, i, TREE_POSITION)
-    g0, g1, g2 = turn(work, i, f0, f1, f2)
-    m0, m1, m2 = turn(work, i, n0, n1, n2)
-    c0, c1, c2 = cross(p0, p1, p2, g0, g1, g2)
-    return g0, g1, g2, m0 + c0, m1 + c1, m2 + c2
+    f = to_parent(model, work, i, linear(a))
+    n = to_parent(model, work, i, angular(a))
+    return pair(f, plus3(n, cross(load3(model, i, PLACE), f)))
 
 
 @inner
-def times(table, i, v0, v1, v2, w0, w1, w2):
-    """Momentum I v, with the 6x6 inertia in the first 36 columns of row i."""
+def times(inertia, a):
+    """Momentum (p, h) = I (v, w)."""
+    a00, a01, a02, a11, a12, a22 = inertia[:6]
+    b00, b01, b02, b10, b11, b12, b20, b21, b22 = inertia[6:15]
+    c00, c01, c02, c11, c12, c22 = inertia[15:]
+    v0, v1, v2, w0, w1, w2 = a
     return (
-        _row(table, i, _ROW_0, v0, v1, v2, w0, w1, w2),
-        _row(table, i, _ROW_1, v0, v1, v2, w0, w1, w2),
-        _row(table, i, _ROW_2, v0, v1, v2, w0, w1, w2),
-        _row(table, i, _ROW_3, v0, v1, v2, w0, w1, w2),
-        _row(table, i, _ROW_4, v0, v1, v2, w0, w1, w2),
-        _row(table, i, _ROW_5, v0, v1, v2, w0, w1, w2),
+        (a00 * v0 + a01 * v1 + a02 * v2) + (b00 * w0 + b01 * w1 + b02 * w2),
+        (a01 * v0 + a11 * v1 + a12 * v2) + (b10 * w0 + b11 * w1 + b12 * w2),
+        (a02 * v0 + a12 * v1 + a22 * v2) + (b20 * w0 + b21 * w1 + b22 * w2),
+        (b00 * v0 + b10 * v1 + b20 * v2) + (c00 * w0 + c01 * w1 + c02 * w2),
+        (b01 * v0 + b11 * v1 + b21 * v2) + (c01 * w0 + c11 * w1 + c12 * w2),
+        (b02 * v0 + b12 * v1 + b22 * v2) + (c02 * w0 + c12 * w1 + c22 * w2),
     )
 
 
 @inner
-def _row(table, i, k, v0, v1, v2, w0, w1, w2):
-    a0, a1, a2, b0, b1, b2 = load(table, i, k)
-    return a0 * v0 + a1 * v1 + a2 * v2 + b0 * w0 + b1 * w1 + b2 * w2
-
-
-@inner
-def gyroscopic(table, i, v0, v1, v2, w0, w1, w2):
-    """Kirchhoff's C(v) v = (w x p, w x h + v x p) with the momentum (p, h) = I v of body i.
+def gyroscopic(inertia, a):
+    """Kirchhoff's C(v) v = (w x p, w x h + v x p) with the momentum (p, h) = I v of a body.
 
     With rigid and added mass in one symmetric I this is C_RB nu + C_A nu_r of section 2.2 in
     one: the momentum B = dT/dv of section 2.2.1, turning with the body.
     """
-    p0, p1, p2, h0, h1, h2 = times(table, i, v0, v1, v2, w0, w1, w2)
-    return turning_momentum(v0, v1, v2, w0, w1, w2, p0, p1, p2, h0, h1, h2)
+    momentum = times(inertia, a)
+    p, h, v, w = linear(momentum), angular(momentum), linear(a), angular(a)
+    return pair(cross(w, p), plus3(cross(w, h), cross(v, p)))
 
 
 @inner
-def turning_momentum(v0, v1, v2, w0, w1, w2, p0, p1, p2, h0, h1, h2):
-    """Rate of a momentum (p, h) that is constant in a frame moving with (v, w)."""
-    f0, f1, f2 = cross(w0, w1, w2, p0, p1, p2)
-    n0, n1, n2 = cross(w0, w1, w2, h0, h1, h2)
-    m0, m1, m2 = cross(v0, v1, v2, p0, p1, p2)
-    return f0, f1, f2, n0 + m0, n1 + m1, n2 + m2
-
-
-@inner
-def weight(bodies, i, k0, k1, k2):
-    """Weight and buoyancy of body i as a force; (k0, k1, k2) points down in its frame."""
-    w = bodies[i, NET_WEIGHT]
-    p0, p1, p2 = load3(bodies, i, NET_MOMENT)
-    n0, n1, n2 = cross(p0, p1, p2, k0, k1, k2)
-    return w * k0, w * k1, w * k2, n0, n1, n2
+def weight(model, i, down):
+    """Weight and buoyancy of body i as a force; `down` is the unit vector in its frame."""
+    w = model[i, NET_WEIGHT]
+    return pair((w * down[0], w * down[1], w * down[2]), cross(load3(model, i, NET_MOMENT), down))

@@ -6,7 +6,7 @@ import numpy as np
 
 from uvms_dynamics.integrator import QUATERNION, VELOCITY
 from uvms_dynamics.kernels.jit import kernel
-from uvms_dynamics.kernels.spatial import cross
+from uvms_dynamics.kernels.spatial import cross, plus3
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array
 
@@ -40,23 +40,21 @@ def at_lever(states, rates, rows, current, lever, gravity):
     a_o = v_r_dot + omega x v_r in the frame of the water, which is inertial too.
     """
     out = np.empty((rows.shape[0], 12))
-    r0, r1, r2 = lever[0], lever[1], lever[2]
+    arm = (lever[0], lever[1], lever[2])
     for k in range(rows.shape[0]):
         x, dx = states[rows[k]], rates[rows[k]]
         rotation = quat_to_matrix(x[QUATERNION:VELOCITY])
-        u0, u1, u2 = x[VELOCITY], x[VELOCITY + 1], x[VELOCITY + 2]
-        w0, w1, w2 = x[VELOCITY + 3], x[VELOCITY + 4], x[VELOCITY + 5]
-        s0, s1, s2 = cross(w0, w1, w2, r0, r1, r2)
-        c0, c1, c2 = cross(w0, w1, w2, u0 + s0, u1 + s1, u2 + s2)
-        e0, e1, e2 = cross(dx[VELOCITY + 3], dx[VELOCITY + 4], dx[VELOCITY + 5], r0, r1, r2)
-        speed = (u0 + s0, u1 + s1, u2 + s2)
-        force = (c0 + e0, c1 + e1, c2 + e2)
-        turn = (w0, w1, w2)
+        v_r = (x[VELOCITY], x[VELOCITY + 1], x[VELOCITY + 2])
+        turn = (x[VELOCITY + 3], x[VELOCITY + 4], x[VELOCITY + 5])
+        speed = plus3(v_r, cross(turn, arm))
+        turn_dot = (dx[VELOCITY + 3], dx[VELOCITY + 4], dx[VELOCITY + 5])
+        force = plus3(cross(turn, speed), cross(turn_dot, arm))
         for i in range(3):
-            out[k, i] = x[i] + rotation[i, 0] * r0 + rotation[i, 1] * r1 + rotation[i, 2] * r2
-            drift = 0.0
+            place, drift = x[i], 0.0
             for j in range(3):
+                place += rotation[i, j] * arm[j]
                 drift += rotation[j, i] * current[j]
+            out[k, i] = place
             out[k, 3 + i] = speed[i] + drift
             out[k, 6 + i] = dx[VELOCITY + i] + force[i] - rotation[2, i] * gravity
             out[k, 9 + i] = turn[i]

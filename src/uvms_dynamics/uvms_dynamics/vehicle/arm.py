@@ -116,9 +116,21 @@ class DragCoefficient(Part):
         pairs = zip(self.reynolds, self.reynolds[1:], strict=False)
         if self.reynolds[0] <= 0.0 or not all(low < high for low, high in pairs):
             raise ValueError("reynolds must be > 0 and increasing")
+        if self.reynolds[-1] > 1e9:
+            raise ValueError(f"reynolds must be at most 1e9; the last is {self.reynolds[-1]:g}")
         if min(self.cd) < 0.0:
             raise ValueError("every cd must be >= 0")
         return self
+
+
+SMOOTH_PLATE = DragCoefficient(
+    reynolds=(1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 5e5, 1e6, 3e6, 1e7),
+    cd=(1.328, 0.42, 0.1328, 0.042, 0.01328, 0.0042, 0.00188, 0.00299, 0.00317, 0.00283),
+)
+"""Skin friction of a smooth flat plate by the Reynolds number of its length: Blasius's
+1.328 / sqrt(Re) up to 5e5, where transition begins, then the ITTC 1957 line less Prandtl's 1700 / Re
+(Schlichting, Boundary-Layer Theory, ch. 7 and 21). A slender cylinder in axial flow has little more.
+"""
 
 
 class Arm(Part):
@@ -129,7 +141,14 @@ class Arm(Part):
     links: tuple[Link, ...] = Field(min_length=1, description="link i is moved by joint i")
     tool: Mounting = Field(description="tool in the last link's frame")
     stowed_deg: tuple[float, ...] = Field(description="joint angles with the arm stowed, degrees")
-    drag_coefficient: DragCoefficient = Field(description="of all drag cylinders")
+    drag_coefficient: DragCoefficient = Field(
+        description="across the axes of all drag cylinders, by the diameter's Reynolds number"
+    )
+    friction_coefficient: DragCoefficient = Field(
+        default=SMOOTH_PLATE,
+        description="along the axes, by the length's Reynolds number and on the side's surface; "
+        "a smooth plate by default",
+    )
 
     @model_validator(mode="after")
     def _consistent(self) -> "Arm":

@@ -50,6 +50,11 @@ def cylinder_volume(shape: DragCylinder) -> float:
     return math.pi * shape.radius_m**2 * shape.length_m
 
 
+def cylinder_surface(shape: DragCylinder) -> float:
+    """Side 2 pi r l, in m^2."""
+    return 2.0 * math.pi * shape.radius_m * shape.length_m
+
+
 def cylinder_inertia(shape: DragCylinder, mass: float) -> Array:
     """Inertia (3, 3) about the centre: m(3r^2+l^2)/12 across the axis, m r^2/2 along it."""
     r, length = shape.radius_m, shape.length_m

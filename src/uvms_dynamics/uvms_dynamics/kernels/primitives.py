@@ -1,0 +1,129 @@
+"""What the kernels need besides + - * /, of one number or of eight lanes alike.
+
+Each is one or two instructions of LLVM, which take a vector as they take a number.
+"""
+
+from collections.abc import Callable
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.extending import intrinsic
+
+from uvms_dynamics.kernels.lanes import LanesType, lanes
+
+_MANTISSA_BITS, _EXPONENT_BIAS = 52, 1023.0
+ROUND = 1.5 * 2.0**_MANTISSA_BITS
+"""A float64 of this size has no room for a fraction: adding it and taking it away rounds."""
+
+
+def _generic(args: tuple[types.Type, ...], emit: Callable) -> Any:
+    """Signature and code of an intrinsic whose arguments and result are numbers or lanes."""
+    kind = lanes if any(isinstance(each, LanesType) for each in args) else types.float64
+
+    def generate(context: Any, builder: Any, signature: Any, values: Any) -> Any:
+        same = [
+            context.cast(builder, value, given, kind)
+            for value, given in zip(values, signature.args, strict=True)
+        ]
+        return emit(builder, *same)
+
+    return kind(*args), generate
+
+
+def _call(name: str) -> Callable:
+    """An LLVM intrinsic, such as llvm.sqrt.f64 or llvm.sqrt.v8f64."""
+
+    def emit(builder: Any, *values: Any) -> Any:
+        kind = values[0].type
+        suffix = f"v{kind.count}f64" if isinstance(kind, ir.VectorType) else "f64"
+        signature = ir.FunctionType(kind, [kind] * len(values))
+        full = f"llvm.{name}.{suffix}"
+        function = cgutils.get_or_insert_function(builder.module, signature, full)
+        return builder.call(function, values)
+
+    return emit
+
+
+def _select(sign: str) -> Callable:
+    def emit(builder: Any, x: Any, y: Any) -> Any:
+        return builder.select(builder.fcmp_ordered(sign, x, y), x, y)
+
+    return emit
+
+
+@intrinsic
+def zero_like(_context, x):
+    """Zero of the type of x."""
+    return _generic((x,), lambda _builder, value: ir.Constant(value.type, None))
+
+
+@intrinsic
+def root(_context, x):
+    """Square root."""
+    return _generic((x,), _call("sqrt"))
+
+
+@intrinsic
+def size(_context, x):
+    """|x|."""
+    return _generic((x,), _call("fabs"))
+
+
+@intrinsic
+def with_sign_of(_context, x, y):
+    """|x| with the sign of y."""
+    return _generic((x, y), _call("copysign"))
+
+
+@intrinsic
+def larger(_context, x, y):
+    """The larger of two; y where x is no number."""
+    return _generic((x, y), _select(">"))
+
+
+@intrinsic
+def smaller(_context, x, y):
+    """The smaller of two; y where x is no number."""
+    return _generic((x, y), _select("<"))
+
+
+@intrinsic
+def two_to_the(_context, k):
+    """2^k of a whole number -1000 < k < 1000, by way of a float64's exponent."""
+
+    def emit(builder: Any, value: Any) -> Any:
+        vector = isinstance(value.type, ir.VectorType)
+        whole = ir.VectorType(ir.IntType(64), value.type.count) if vector else ir.IntType(64)
+        count = value.type.count if vector else 1
+        bias, shift = [ROUND + _EXPONENT_BIAS] * count, [_MANTISSA_BITS] * count
+        if not vector:
+            bias, shift = bias[0], shift[0]
+        bits = builder.bitcast(builder.fadd(value, ir.Constant(value.type, bias)), whole)
+        return builder.bitcast(builder.shl(bits, ir.Constant(whole, shift)), value.type)
+
+    return _generic((k,), emit)
+
+
+@intrinsic
+def item(_context, table, k):
+    """Number k of a contiguous table, counted through its rows."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, args[0])
+        return builder.load(builder.gep(array.data, [args[1]]))
+
+    return types.float64(table, types.intp), generate
+
+
+@intrinsic
+def put_item(_context, table, k, number):
+    """Write number k of a contiguous table, counted through its rows."""
+
+    def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, args[0])
+        builder.store(args[2], builder.gep(array.data, [args[1]]))
+        return context.get_dummy_value()
+
+    return types.void(table, types.intp, types.float64), generate
