@@ -5,14 +5,13 @@ rigid and added mass M and Kirchhoff's skew C_K. With it M_dot - 2 C is skew-sym
 proofs need it (Fossen 2011, sec. 6.3; From, Gravdahl and Pettersen 2014, sec. 8.3).
 """
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
 
 from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle import Hull, Joint, Link, Vehicle
+from uvms_dynamics.vehicle import Hull, Link, Vehicle
 from uvms_dynamics.vehicle.arm import Arm
 from uvms_dynamics.vehicle.frames import Pose, joint_pose, mounting_pose
 from uvms_dynamics.vehicle.shapes import move_to_origin
@@ -61,7 +60,7 @@ def link_jacobians(arm: Arm, q: Array, q_dot: Array) -> Iterator[tuple[Array, Ar
         step = _to_inner_frame(offset, turn)
         slope = _to_inner_frame(offset, turning) @ jacobian + step @ slope
         jacobian = step @ jacobian
-        jacobian[:, 6 + i] = _axis(joint)
+        jacobian[:, 6 + i] = _axis(offset, turn)
         yield jacobian, slope
 
 
@@ -79,9 +78,7 @@ def _to_inner_frame(offset: Array, turn: Array) -> Array:
     return matrix
 
 
-def _axis(joint: Joint) -> Array:
-    """Twist (6,) of a link for a unit rate of its joint, in its DH frame: (z x r, z)."""
-    alpha = math.radians(joint.alpha_deg)
-    axis = np.array([0.0, math.sin(alpha), math.cos(alpha)])
-    arm = np.array([joint.a_m, joint.d_m * axis[1], joint.d_m * axis[2]])
-    return np.concatenate([np.cross(axis, arm), axis])
+def _axis(offset: Array, turn: Array) -> Array:
+    """Twist (6,) of the inner frame for a unit rate about the outer z axis: (z x r, z)."""
+    axis = turn[:, 2]
+    return np.concatenate([np.cross(axis, offset), axis])
