@@ -146,8 +146,7 @@ def drag_force(vehicle, nu_r, q, q_dot):
 def cylinder_drag(vehicle, cylinder, twist):
     """Drag (6,) on a cylinder about its link's origin: across it by strips, and along it."""
     nodes, weights = np.polynomial.legendre.leggauss(cylinder.stations)
-    along = axial_drag(vehicle, cylinder, twist)
-    total = np.concatenate([along, np.cross(cylinder.center_m, along)])
+    total = np.zeros(6)
     for node, weight in zip(nodes, weights, strict=True):
         width = 0.5 * cylinder.length_m * weight
         r = np.add(cylinder.center_m, 0.5 * cylinder.length_m * node * np.array(cylinder.axis))
@@ -178,18 +177,6 @@ def line_drag(vehicle, cylinder, velocity):
         vehicle.arm.drag_coefficient, speed * diameter / water.kinematic_viscosity_m2_s
     )
     return -0.5 * water.water_density_kg_m3 * c_d * diameter * speed * across
-
-
-def axial_drag(vehicle, cylinder, twist):
-    """Skin friction (3,) on the side of a cylinder: -1/2 rho C_f(Re) pi D L |v_a| v_a."""
-    table = getattr(vehicle.arm, "friction_coefficient", None)
-    if table is None:
-        return np.zeros(3)
-    water, axis, length = vehicle.environment, np.array(cylinder.axis), cylinder.length_m
-    speed = (twist[:3] + np.cross(twist[3:], cylinder.center_m)) @ axis
-    c_f = drag_coefficient(table, abs(speed) * length / water.kinematic_viscosity_m2_s)
-    side = 2.0 * np.pi * cylinder.radius_m * length
-    return -0.5 * water.water_density_kg_m3 * c_f * side * abs(speed) * speed * axis
 
 
 def drag_coefficient(table, reynolds):
