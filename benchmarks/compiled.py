@@ -9,7 +9,7 @@ import numpy as np
 from motions import Motion
 from numba import njit
 
-from uvms_dynamics import Model, Vehicle, build_model
+from uvms_dynamics import Model, Vehicle, advance_batch, build_model
 from uvms_dynamics.integrator import System, advance, make_scratch
 from uvms_dynamics.kernels.forward import forward_dynamics_into
 from uvms_dynamics.kernels.motion import make_workspace
@@ -19,6 +19,11 @@ from uvms_dynamics.thrusters import build_thrusters
 STEP_S = 0.005
 STEPS = 50
 """Runge-Kutta steps in one call of `stepping`."""
+
+BATCH_STEPS = 5
+"""Runge-Kutta steps of each simulation in one call of `stepping_batch`."""
+
+THRUST_N = 2.0
 
 
 @njit(cache=True)
@@ -44,11 +49,9 @@ def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[]
     with lag, friction, end stops; states and rates are recorded.
     """
     steps, step = STEPS * 2**halvings, STEP_S / 2**halvings
-    n, m = vehicle.n_joints, vehicle.n_thrusters
-    system = System(build_model(vehicle), build_thrusters(vehicle), np.array([0.2, -0.1, 0.0]))
-    start = np.concatenate([np.zeros(3), motion.quat, motion.nu, motion.q, motion.q_dot])
-    start = np.concatenate([start, np.zeros(m)])
-    scratch, thrust, effort = make_scratch(system), np.full(m, 2.0), motion.tau[6:].copy()
+    system, start = _system(vehicle), _state(vehicle, motion)
+    scratch, thrust = make_scratch(system), np.full(vehicle.n_thrusters, THRUST_N)
+    effort = motion.tau[6:].copy()
     states, rates = np.empty((2, steps + 1, len(start)))
     state = start.copy()
 
@@ -58,3 +61,23 @@ def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[]
         return state
 
     return work
+
+
+def stepping_batch(vehicle: Vehicle, motions: list[Motion]) -> Callable[[], Array]:
+    """A call that makes BATCH_STEPS steps from each of many motions; returns their last states."""
+    system = _system(vehicle)
+    starts = np.array([_state(vehicle, motion) for motion in motions])
+    thrust = np.full((len(motions), vehicle.n_thrusters), THRUST_N)
+    effort = np.array([motion.tau[6:] for motion in motions])
+    return lambda: advance_batch(system, starts, thrust, effort, STEP_S, BATCH_STEPS)
+
+
+def _system(vehicle: Vehicle) -> System:
+    return System(build_model(vehicle), build_thrusters(vehicle), np.array([0.2, -0.1, 0.0]))
+
+
+def _state(vehicle: Vehicle, motion: Motion) -> Array:
+    """State of the integrator with this motion and no thrust."""
+    idle = np.zeros(vehicle.n_thrusters)
+    parts = [np.zeros(3), motion.quat, motion.nu, motion.q, motion.q_dot, idle]
+    return np.concatenate(parts)

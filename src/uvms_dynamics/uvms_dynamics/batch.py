@@ -6,7 +6,7 @@ from uvms_dynamics.errors import ConfigError
 from uvms_dynamics.integrator import System, derivative, finish_step, state_size
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.lanes import LANES, lane_table, lane_vector
-from uvms_dynamics.kernels.layout import WORK_COLUMNS
+from uvms_dynamics.kernels.layout import HULL, JOINTS, WORK_COLUMNS
 from uvms_dynamics.signals import Array
 
 _FIRST = np.int64(0)
@@ -22,7 +22,7 @@ def advance_batch(
     for rounding. Vehicle and current are common to all. One thread; 1024 simulations take less
     than half the time that they take one by one. Raises ConfigError for shapes that do not fit.
     """
-    n, m = effort.shape[-1], len(system.thrusters)
+    n, m = int(system.model[HULL, JOINTS]), len(system.thrusters)
     wanted = {
         "x": (len(x), state_size(system)),
         "thrust_command": (len(x), m),

@@ -15,8 +15,8 @@ the file's table, linear in ln Re, the resampled one is off by less than 0.1 per
 """
 
 FIRST_OCTAVE, LAST_OCTAVE = -10, 30
-"""The table covers Re = 2**FIRST_OCTAVE to 2**LAST_OCTAVE, 0.001 to 1.07e9; what is below has no drag
-to speak of, and no file goes beyond."""
+"""The table covers Re = 2**FIRST_OCTAVE to 2**LAST_OCTAVE, 0.001 to 1.07e9; what is below has no
+drag to speak of, and no file goes beyond."""
 
 CELLS = (LAST_OCTAVE - FIRST_OCTAVE) * PER_OCTAVE + 1
 """Cells of the table; the last one holds the constant beyond it."""

@@ -10,7 +10,7 @@ frame and Rz(c) into the joint angle. So the kernels turn inertias in two planes
 """
 
 import math
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -144,7 +144,8 @@ def _set_fixtures(row: Array, vehicle: Vehicle, tool: Pose) -> None:
     _put(row, layout.ADDED_MASS, _packed(np.array(vehicle.hull.added_mass)))
 
 
-def _put(row: Array, column: int, values) -> None:
+def _put(row: Array, column: Any, values: Any) -> None:
+    """Write numbers to a row from a column on."""
     row[column : column + len(values)] = values
 
 

@@ -86,7 +86,7 @@ def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:
 
 def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
     """Slope (nx-3, nx-3) of the state's rate, without the position, which nothing depends on."""
-    n, m = vehicle.n_joints, vehicle.n_thrusters
+    n = vehicle.n_joints
     scratch, thrust = make_scratch(system), point.state[JOINTS + 2 * n :].copy()
     row, rate = np.empty((1, len(point.state))), np.empty((1, len(point.state)))
 

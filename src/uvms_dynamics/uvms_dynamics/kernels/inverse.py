@@ -7,6 +7,7 @@ from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import FORCE, HULL, INERTIA, ROTOR
 from uvms_dynamics.kernels.motion import (
+    check_joints,
     down_in_body,
     hull_bias_force,
     into_body,
@@ -37,6 +38,7 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     without joint friction and limits. nu_r (6,) is relative to the water, body frame, nu_r_dot
     the derivative of its components; quat (4,); q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
     """
+    check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6 + n)
     down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
@@ -59,6 +61,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     counts. Eq. (14)-(15) with omega x (I omega), corrected from the print. Arguments as in
     `inverse_dynamics`; body frame.
     """
+    check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6)
     v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))

@@ -17,7 +17,9 @@ from numba.core.datamodel import PrimitiveModel
 from numba.core.imputils import lower_builtin, lower_cast
 from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, ConcreteTemplate, infer_global, signature
-from numba.extending import intrinsic, models, register_model
+from numba.extending import models, register_model
+
+from uvms_dynamics.kernels.jit import intrinsic
 
 LANES = 8
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)
@@ -64,7 +66,7 @@ def _define(plain: Callable, in_place: Callable, instruction: Callable) -> None:
 
         @infer_global(function)
         class _Typing(ConcreteTemplate):
-            cases = [signature(lanes, lanes, lanes)]
+            cases = (signature(lanes, lanes, lanes),)
 
         @lower_builtin(function, lanes, lanes)
         def _lowering(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
@@ -79,7 +81,7 @@ _define(operator.truediv, operator.itruediv, lambda builder: builder.fdiv)
 
 @infer_global(operator.neg)
 class _NegativeTyping(ConcreteTemplate):
-    cases = [signature(lanes, lanes)]
+    cases = (signature(lanes, lanes),)
 
 
 @lower_builtin(operator.neg, lanes)

@@ -50,7 +50,8 @@ STRIP = np.int64(9)  # pairs: place along the axis, 1/2 rho x diameter x length
 
 MODEL_COLUMNS = np.int64(48)
 
-# Workspace (rows, 21); after rows 0..n slots of the drag cylinders, see `drag`. Row i: of joint i and the link that it moves, in its frame
+# Workspace (rows, 21). Row i: joint i and the link that it moves, in its frame; behind row n there
+# are slots for the drag cylinders, see `drag`.
 COS, SIN = np.int64(0), np.int64(1)  # of the joint angle with its offset
 RATE = np.int64(2)  # of the joint; in the end its acceleration
 TORQUE = np.int64(3)  # of the joint; what is left of it for the joint's own acceleration

@@ -10,7 +10,13 @@ from uvms_dynamics.kernels.inertia import (
 )
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import HULL, INERTIA, ROTOR
-from uvms_dynamics.kernels.motion import into_body, into_hull, make_workspace, set_angle
+from uvms_dynamics.kernels.motion import (
+    check_joints,
+    into_body,
+    into_hull,
+    make_workspace,
+    set_angle,
+)
 from uvms_dynamics.kernels.spatial import force_to_parent, load6, times
 
 
@@ -21,6 +27,7 @@ def mass_matrix(model, q):
     Rows and columns: body wrench and nu_r_dot, then joint torques and q_ddot; q (n,) rad.
     Composite-rigid-body algorithm (Featherstone 2008, sec. 6.2) with a general symmetric inertia.
     """
+    check_joints(model, q, q, q)
     n = q.shape[0]
     work, matrix = make_workspace(model), np.empty((6 + n, 6 + n))
     none = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -46,6 +46,14 @@ def make_workspace(model):
 
 
 @inner
+def check_joints(model, q, q_dot, other):
+    """Raise ValueError unless these three have a value for each joint of the model."""
+    n = np.int64(model[HULL, JOINTS])
+    if q.shape[0] != n or q_dot.shape[0] != n or other.shape[0] != n:
+        raise ValueError("q, its derivatives and the joint torques need as many values as joints")
+
+
+@inner
 def down_in_body(x, y, z, w):
     """World's down (0, 0, 1) in the body frame: the last row of R_world_body."""
     return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)

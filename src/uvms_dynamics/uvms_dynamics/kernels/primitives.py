@@ -9,8 +9,8 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
-from numba.extending import intrinsic
 
+from uvms_dynamics.kernels.jit import intrinsic
 from uvms_dynamics.kernels.lanes import LanesType, lanes
 
 _MANTISSA_BITS, _EXPONENT_BIAS = 52, 1023.0
@@ -94,14 +94,17 @@ def two_to_the(_context, k):
     """2^k of a whole number -1000 < k < 1000, by way of a float64's exponent."""
 
     def emit(builder: Any, value: Any) -> Any:
-        vector = isinstance(value.type, ir.VectorType)
-        whole = ir.VectorType(ir.IntType(64), value.type.count) if vector else ir.IntType(64)
-        count = value.type.count if vector else 1
-        bias, shift = [ROUND + _EXPONENT_BIAS] * count, [_MANTISSA_BITS] * count
-        if not vector:
-            bias, shift = bias[0], shift[0]
-        bits = builder.bitcast(builder.fadd(value, ir.Constant(value.type, bias)), whole)
-        return builder.bitcast(builder.shl(bits, ir.Constant(whole, shift)), value.type)
+        if isinstance(value.type, ir.VectorType):
+            count = value.type.count
+            whole = ir.VectorType(ir.IntType(64), count)
+            shift = ir.Constant(whole, [_MANTISSA_BITS] * count)
+            bias = ir.Constant(value.type, [ROUND + _EXPONENT_BIAS] * count)
+        else:
+            whole = ir.IntType(64)
+            shift = ir.Constant(whole, _MANTISSA_BITS)
+            bias = ir.Constant(value.type, ROUND + _EXPONENT_BIAS)
+        bits = builder.bitcast(builder.fadd(value, bias), whole)
+        return builder.bitcast(builder.shl(bits, shift), value.type)
 
     return _generic((k,), emit)
 

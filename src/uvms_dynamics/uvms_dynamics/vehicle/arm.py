@@ -127,9 +127,10 @@ SMOOTH_PLATE = DragCoefficient(
     reynolds=(1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 5e5, 1e6, 3e6, 1e7),
     cd=(1.328, 0.42, 0.1328, 0.042, 0.01328, 0.0042, 0.00188, 0.00299, 0.00317, 0.00283),
 )
-"""Skin friction of a smooth flat plate by the Reynolds number of its length: Blasius's
-1.328 / sqrt(Re) up to 5e5, where transition begins, then the ITTC 1957 line less Prandtl's 1700 / Re
-(Schlichting, Boundary-Layer Theory, ch. 7 and 21). A slender cylinder in axial flow has little more.
+"""Skin friction of a smooth flat plate by the Reynolds number of its length: Blasius's 1.328 /
+sqrt(Re) up to 5e5, where transition begins, then the ITTC 1957 line less Prandtl's 1700 / Re
+(Schlichting, Boundary-Layer Theory, ch. 7 and 21). A slender cylinder along the flow has a little
+more.
 """
 
 
