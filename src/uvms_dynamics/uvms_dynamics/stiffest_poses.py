@@ -13,7 +13,9 @@ from uvms_dynamics.model import Model
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Vehicle
 
-_TRIED = 256
+_TRIED, _ANGLES = 256, 2048
+"""Most poses that are tried, and most joint angles in all: long arms take long for each."""
+
 _BEYOND = 1.5
 """Poses are spread over so many times the joints' ranges and cut: many have joints at a limit."""
 
@@ -54,13 +56,14 @@ def stiffest_poses(vehicle: Vehicle, model: Model) -> StiffestPoses:
 
 
 def _poses(vehicle: Vehicle) -> tuple[Array, Array]:
-    """Joint angles (_TRIED, n) anywhere, and with all joints at a limit; the same at every call.
+    """Joint angles (k, n) anywhere, and with all joints at a limit; the same at every call.
 
     Multiples of the square roots of integers fill the cube evenly (Weyl).
     """
     lower, upper = joint_limits(vehicle)
     step = np.sqrt(np.arange(2.0, 2.0 + len(lower))) + np.sqrt(5.0)
-    part = np.outer(np.arange(1, _TRIED + 1), step) % 1.0
+    tried = min(_TRIED, max(1, _ANGLES // len(lower)))
+    part = np.outer(np.arange(1, tried + 1), step) % 1.0
     spread = np.clip(0.5 + _BEYOND * (part - 0.5), 0.0, 1.0)
     return lower + spread * (upper - lower), np.where(part < 0.5, lower, upper)
 
