@@ -47,7 +47,7 @@ class Bound(NamedTuple):
     step_s: float
     eigenvalue: complex  # 1/s
     point: Point
-    cause: str
+    slope: Array  # of the state's rate there, see `jacobian`
 
 
 def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
@@ -55,8 +55,8 @@ def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
     bound = greatest_step(vehicle, config)
     if config.step_s > bound.step_s:
         raise ConfigError(
-            f"step_s: {config.step_s:g} s is unstable with the {bound.cause}: a mode of"
-            f" {abs(bound.eigenvalue):.3g} 1/s, {bound.point.name};"
+            f"step_s: {config.step_s:g} s is unstable with the {cause_of(vehicle, bound)}: a mode"
+            f" of {abs(bound.eigenvalue):.3g} 1/s, {bound.point.name};"
             f" allowed: at most {_rounded_down(bound.step_s):g} s"
         )
 
@@ -66,22 +66,17 @@ def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:
     current = np.array(config.current_ned_m_s, dtype=float)
     system = System(build_model(vehicle), build_thrusters(vehicle), current)
     points = list(operating_points(vehicle, system.model, config))
-    matrices = np.array([jacobian(vehicle, system, point) for point in points])
+    slopes = np.array([jacobian(vehicle, system, point) for point in points])
     # A state without finite rates is no matter of the step: the plant says what is wrong with it.
-    finite = np.isfinite(matrices).all(axis=(1, 2))
-    eigenvalues = np.linalg.eigvals(np.where(finite[:, None, None], matrices, 0.0)).astype(complex)
+    slopes[~np.isfinite(slopes).all(axis=(1, 2))] = 0.0
+    eigenvalues = np.linalg.eigvals(slopes).astype(complex)
     eigenvalues[np.abs(eigenvalues) < _SLOW * np.abs(eigenvalues).max()] = 0.0
     steps = stable_steps(eigenvalues)
     strikes = np.array([[point.strikes] for point in points])
     with np.errstate(divide="ignore"):
         steps = np.minimum(steps, np.where(strikes, _BOUNCE / np.abs(eigenvalues.imag), math.inf))
     at, k = np.unravel_index(int(np.argmin(steps)), steps.shape)
-    eigenvalue = complex(eigenvalues[at, k])
-    step = float(steps[at, k])
-    if math.isinf(step):
-        return Bound(step, eigenvalue, points[at], "nothing")
-    cause = _cause(vehicle, system, points[at], matrices[at], eigenvalue)
-    return Bound(step, eigenvalue, points[at], cause)
+    return Bound(float(steps[at, k]), complex(eigenvalues[at, k]), points[at], slopes[at])
 
 
 def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
@@ -145,18 +140,16 @@ def _gains_too_much(z: Complex) -> NDArray[np.bool_]:
     return np.abs(amplification(z)) > growth
 
 
-def _cause(
-    vehicle: Vehicle, system: System, point: Point, matrix: Array, eigenvalue: complex
-) -> str:
+def cause_of(vehicle: Vehicle, bound: Bound) -> str:
     """What the mode is made of: the part with the greatest share in it, and why it is fast.
 
     Shares are participation factors |left x right eigenvector|, the singular vectors that
     belong to the least singular value of A - lambda.
     """
-    left, _, right = np.linalg.svd(matrix - eigenvalue * np.eye(len(matrix)))
+    point, n = bound.point, vehicle.n_joints
+    left, _, right = np.linalg.svd(bound.slope - bound.eigenvalue * np.eye(len(bound.slope)))
     share = np.zeros(len(point.state))
     share[QUATERNION:] = np.abs(left[:, -1] * right[-1])
-    n = vehicle.n_joints
     hull, thrust = share[VELOCITY:JOINTS], share[JOINTS + 2 * n :]
     joints = share[JOINTS : JOINTS + n] + share[JOINTS + n : JOINTS + 2 * n]
     k = int(np.argmax([*hull, *joints, *thrust]))
@@ -164,20 +157,20 @@ def _cause(
         return f"damping of the hull in {AXES[k]}"
     k -= len(AXES)
     if k < n:
-        return _cause_in_joint(vehicle, system, point, k, abs(eigenvalue))
+        return _cause_in_joint(vehicle, point, k, abs(bound.eigenvalue))
     return f"time_constant_s of thrusters.{k - n} ({vehicle.thrusters[k - n].name})"
 
 
-def _cause_in_joint(vehicle: Vehicle, system: System, point: Point, i: int, rate: float) -> str:
+def _cause_in_joint(vehicle: Vehicle, point: Point, i: int, rate: float) -> str:
     """Friction, stop or water: the greatest share in s^2 I + s (b + b_stop) + k = 0, |s| = rate."""
     n = vehicle.n_joints
     q, q_dot = point.state[JOINTS : JOINTS + n], point.state[JOINTS + n : JOINTS + 2 * n]
     h = _differences(vehicle, point)[JOINTS + i], _differences(vehicle, point)[JOINTS + n + i]
-    unit = np.eye(n)[i]
+    unit, model = np.eye(n)[i], build_model(vehicle)
 
     def slope(angle: Array, shift_q: Array, shift_rate: Array, width: float) -> float:
         ends = [
-            joint_passive_torque(system.model, angle + sign * shift_q, q_dot + sign * shift_rate)[i]
+            joint_passive_torque(model, angle + sign * shift_q, q_dot + sign * shift_rate)[i]
             for sign in (1.0, -1.0)
         ]
         return float(ends[1] - ends[0]) / (2.0 * width)
@@ -187,7 +180,7 @@ def _cause_in_joint(vehicle: Vehicle, system: System, point: Point, i: int, rate
     friction = rate * slope(free, still, h[1] * unit, h[1])
     stiffness = slope(q, h[0] * unit, still, h[0])
     dissipation = rate * slope(q, still, h[1] * unit, h[1]) - friction
-    water = 0.25 * rate**2 / np.linalg.inv(mass_matrix(system.model, q))[6 + i, 6 + i]
+    water = 0.25 * rate**2 / np.linalg.inv(mass_matrix(model, q))[6 + i, 6 + i]
     where = f"arm.joints.{i} ({joint.name})"
     shares = {
         f"friction of {where} (raise coulomb_width_deg_s)": friction,
