@@ -80,7 +80,7 @@ def test_the_arrays_given_stay_as_they_are():
         np.testing.assert_array_equal(array, copy)
 
 
-@pytest.mark.parametrize(("which", "name"), enumerate(("x", "thrust_command", "effort")))
+@pytest.mark.parametrize(("which", "name"), list(enumerate(("x", "thrust_command", "effort"))))
 def test_a_wrong_shape_is_named(which, name):
     system = system_of(3)
     given = list(random_starts(system, 3, 4))
