@@ -1,8 +1,9 @@
 """The vehicle as flat float64 tables, which numba kernels read.
 
 Link frames here are proximal: frame i has its origin on the axis of joint i and turns with it, so
-that the joint's motion is always a turn about the frame's own z axis. The vehicle file's distal
-Denavit-Hartenberg frame i lies in it at Tz(d) Tx(a) Rx(alpha), a constant. Body 0 is the hull.
+that the joint's motion is always a turn about the frame's own z axis. The link's frame i of the
+vehicle file lies in it at a constant pose: Tz(d) Tx(a) Rx(alpha) for a Denavit-Hartenberg frame,
+none for a joint with an `origin`. Body 0 is the hull.
 """
 
 import math
@@ -17,7 +18,14 @@ from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Environment, Hull, Joint, Link, Vehicle
 from uvms_dynamics.vehicle.arm import Arm, DragCylinder
-from uvms_dynamics.vehicle.frames import Pose, compose, mounting_pose
+from uvms_dynamics.vehicle.frames import (
+    IDENTITY,
+    Pose,
+    compose,
+    distal_pose,
+    mounting_pose,
+    placement_pose,
+)
 from uvms_dynamics.vehicle.shapes import move_to_origin
 
 
@@ -36,16 +44,14 @@ class Model(NamedTuple):
     tool: Array  # (4, 3) tool in the last link's frame: rotation, then position
 
 
-_IDENTITY: Pose = (np.zeros(3), np.eye(3))
-
 
 def build_model(vehicle: Vehicle) -> Model:
     """Tables of a vehicle for the kernels; all arrays are C-contiguous."""
     arm, environment = vehicle.arm, vehicle.environment
     poses = [distal_pose(joint) for joint in arm.joints]
-    bodies = [_body_row(vehicle.hull, _IDENTITY, environment)]
+    bodies = [_body_row(vehicle.hull, IDENTITY, environment)]
     bodies += [_body_row(k, pose, environment) for k, pose in zip(arm.links, poses, strict=True)]
-    placements = [mounting_pose(arm.base), *poses[:-1]]
+    placements = joint_placements(arm)
     joints = [np.zeros(layout.JOINT_COLUMNS)]
     joints += [_joint_row(j, pose) for j, pose in zip(arm.joints, placements, strict=True)]
     position, rotation = compose(poses[-1], mounting_pose(arm.tool))
@@ -62,11 +68,10 @@ def build_model(vehicle: Vehicle) -> Model:
     )
 
 
-def distal_pose(joint: Joint) -> Pose:
-    """The DH frame in the joint's own frame: Tz(d) Tx(a) Rx(alpha)."""
-    c, s = math.cos(math.radians(joint.alpha_deg)), math.sin(math.radians(joint.alpha_deg))
-    rotation = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
-    return np.array([joint.a_m, 0.0, joint.d_m]), rotation
+def joint_placements(arm: Arm) -> list[Pose]:
+    """Each joint's frame at angle and offset zero in the frame of the joint before it."""
+    parents = [mounting_pose(arm.base), *(distal_pose(joint) for joint in arm.joints[:-1])]
+    return [compose(p, placement_pose(j)) for p, j in zip(parents, arm.joints, strict=True)]
 
 
 def _table(rows) -> Array:
