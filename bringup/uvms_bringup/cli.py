@@ -11,6 +11,7 @@ from typing import Any
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.session import Session, prepare
+from uvms_bringup.trials.commands import add_commands as add_trial_commands
 from uvms_dynamics import topics
 from uvms_dynamics.errors import UvmsError
 
@@ -55,6 +56,7 @@ def parser() -> argparse.ArgumentParser:
         _add_run(commands, name, action, text)
     _add_replay(commands)
     _add_report(commands)
+    add_trial_commands(commands)
     return top
 
 
