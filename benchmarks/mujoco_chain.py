@@ -7,7 +7,7 @@ import mujoco
 import numpy as np
 
 from uvms_dynamics import Vehicle, matrix_to_quat, quat_multiply
-from uvms_dynamics.model import distal_pose
+from uvms_dynamics.vehicle.frames import distal_pose
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Hull, Link
 from uvms_dynamics.vehicle.frames import Pose, mounting_pose

@@ -7,7 +7,7 @@ import pinocchio as pin
 from motions import Motion
 
 from uvms_dynamics import Vehicle
-from uvms_dynamics.model import distal_pose
+from uvms_dynamics.vehicle.frames import distal_pose
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle.frames import mounting_pose
 

@@ -12,6 +12,7 @@ from uvms_bringup import added_mass
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.session import Session, prepare
+from uvms_bringup.trials.commands import add_commands as add_trial_commands
 from uvms_dynamics import topics
 from uvms_dynamics.errors import UvmsError
 
@@ -58,6 +59,7 @@ def parser() -> argparse.ArgumentParser:
     _add_replay(commands)
     _add_report(commands)
     added_mass.add_command(commands)
+    add_trial_commands(commands)
     return top
 
 

@@ -17,3 +17,7 @@ class RunError(BringupError):
 
 class LogError(BringupError):
     """A log is missing, unreadable or lacks what was asked of it."""
+
+
+class TrialError(BringupError):
+    """A recorded trial is unreadable, lacks values, or cannot be driven by the vehicle given."""

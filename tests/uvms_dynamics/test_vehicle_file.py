@@ -91,11 +91,12 @@ def test_any_number_of_joints_and_thrusters():
 def test_unknown_override_lists_the_choices():
     assert refusal(hull__mas_kg=3.0) == (
         "override hull.mas_kg: hull has no 'mas_kg'; choose from spheroid, volume_m3, mass_kg,"
-        " cg_m, cb_m, inertia_kg_m2, added_mass, linear_damping, quadratic_damping"
+        " cg_m, cb_m, inertia_kg_m2, added_mass, attachments, linear_damping,"
+        " quadratic_damping"
     )
     assert refusal(wings=3.0) == (
         "override wings: the vehicle file has no 'wings'; choose from name, environment, hull,"
-        " thrusters, arm, sensors"
+        " thrusters, arm, sensors, tether"
     )
     assert refusal(thrusters__left__limit_n=1.0).startswith(
         "override thrusters.left.limit_n: thrusters has no 'left'; choose from 0, 1, 2, 3, 4, 5, 6,"

@@ -5,7 +5,7 @@ import numpy as np
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle.arm import Arm
-from uvms_dynamics.vehicle.frames import Pose, arm_frames, compose, mounting_pose
+from uvms_dynamics.vehicle.frames import Pose, arm_frames, compose, joint_frames, mounting_pose
 
 
 def end_effector(arm: Arm, position: Array, quaternion: Array, q: Array) -> Pose:
@@ -25,11 +25,10 @@ def end_effector_jacobian(arm: Arm, quaternion: Array, q: Array) -> Array:
     [z_(i-1) x (r_n - r_(i-1)); z_(i-1)], corrected from the print (the skew symbol is missing in
     J_v, the indices of J_m are shifted).
     """
-    frames = arm_frames(arm, q)
-    tool = compose(frames[-1], mounting_pose(arm.tool))[0]
+    tool = compose(arm_frames(arm, q)[-1], mounting_pose(arm.tool))[0]
     columns = [np.concatenate([axis, np.zeros(3)]) for axis in np.eye(3)]
     columns += [np.concatenate([np.cross(axis, tool), axis]) for axis in np.eye(3)]
-    for origin, rotation in frames[:-1]:
+    for origin, rotation in joint_frames(arm, q):
         z = rotation[:, 2]
         columns.append(np.concatenate([np.cross(z, tool - origin), z]))
     to_world = np.kron(np.eye(2), quat_to_matrix(quaternion))

@@ -1,8 +1,9 @@
 """The vehicle as one flat float64 table, which numba kernels read.
 
 Link frames here are proximal: frame i has its origin on the axis of joint i and turns with it, so
-that the joint's motion is always a turn about the frame's own z axis. The vehicle file's distal
-Denavit-Hartenberg frame i lies in it at Tz(d) Tx(a) Rx(alpha), a constant. Body 0 is the hull.
+that the joint's motion is always a turn about the frame's own z axis. The link's frame i of the
+vehicle file lies in it at a constant pose: Tz(d) Tx(a) Rx(alpha) for a Denavit-Hartenberg frame,
+none for a joint with an `origin`. Body 0 is the hull.
 
 Moreover each frame is turned about its z axis such that the next joint lies in it at Tr(p)
 Rx(twist), without a third angle: Rz(a) Rx(twist) Rz(c) is any rotation, Rz(a) goes into the parent
@@ -21,7 +22,14 @@ from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Environment, Hull, Joint, Link, Vehicle
 from uvms_dynamics.vehicle.arm import Arm, DragCoefficient, DragCylinder
-from uvms_dynamics.vehicle.frames import Pose, compose, mounting_pose
+from uvms_dynamics.vehicle.frames import (
+    IDENTITY,
+    Pose,
+    compose,
+    distal_pose,
+    mounting_pose,
+    placement_pose,
+)
 from uvms_dynamics.vehicle.shapes import cylinder_surface, move_to_origin
 
 Model = Array
@@ -41,13 +49,12 @@ def build_model(vehicle: Vehicle) -> Model:
     """Table of a vehicle for the kernels."""
     arm, environment = vehicle.arm, vehicle.environment
     distal = [distal_pose(joint) for joint in arm.joints]
-    parents = [mounting_pose(arm.base), *distal[:-1]]
-    mounts = [_mount(pose, j) for pose, j in zip(parents, arm.joints, strict=True)]
+    mounts = [_mount(p, j) for p, j in zip(joint_placements(arm), arm.joints, strict=True)]
     turns = [mount.turn for mount in mounts] + [0.0]
     poses = [_turned(turn, pose) for turn, pose in zip(turns[1:], distal, strict=True)]
     n = vehicle.n_joints
     rows = np.zeros((n + 2, layout.MODEL_COLUMNS))
-    _set_body(rows[0], vehicle.hull, _turned(turns[0], _IDENTITY), environment)
+    _set_body(rows[0], vehicle.hull, _turned(turns[0], IDENTITY), environment)
     _set_hull(rows[0], vehicle.hull, turns[0])
     groups, strips, ends = _drag_groups(arm, poses, environment)
     tables = [rows, *(_as_rows(x) for x in (groups, *map(cell_lines, _coefficients(arm))))]
@@ -65,12 +72,12 @@ def build_model(vehicle: Vehicle) -> Model:
     return np.ascontiguousarray(np.vstack(tables))
 
 
-def distal_pose(joint: Joint) -> Pose:
-    """The DH frame in the joint's own frame: Tz(d) Tx(a) Rx(alpha)."""
-    return np.array([joint.a_m, 0.0, joint.d_m]), _about_x(math.radians(joint.alpha_deg))
+def joint_placements(arm: Arm) -> list[Pose]:
+    """Each joint's frame at angle and offset zero in the frame of the joint before it."""
+    parents = [mounting_pose(arm.base), *(distal_pose(joint) for joint in arm.joints[:-1])]
+    return [compose(p, placement_pose(j)) for p, j in zip(parents, arm.joints, strict=True)]
 
 
-_IDENTITY: Pose = (np.zeros(3), np.eye(3))
 _NO_TILT = 1e-15  # sine of a twist below which only the sum of the two other angles counts
 
 

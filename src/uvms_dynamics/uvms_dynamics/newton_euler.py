@@ -12,7 +12,13 @@ from uvms_dynamics.body_forces import Motion
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Joint, Link, Vehicle
-from uvms_dynamics.vehicle.frames import Pose, arm_frames, joint_pose, mounting_pose
+from uvms_dynamics.vehicle.frames import (
+    Pose,
+    arm_frames,
+    joint_pose,
+    mounting_pose,
+    placement_pose,
+)
 
 _Z = np.array([0.0, 0.0, 1.0])
 _STILL = np.zeros(3)
@@ -114,19 +120,21 @@ def _arm_reaction(
     motions = [_carried(hull, mounting_pose(arm.base))]
     poses = [joint_pose(joint, angle) for joint, angle in zip(arm.joints, q, strict=True)]
     for joint, pose, rate, acceleration in zip(arm.joints, poses, q_dot, q_ddot, strict=True):
-        motions.append(next_motion(motions[-1], joint, pose, rate, acceleration))
+        placed = _carried(motions[-1], placement_pose(joint))
+        motions.append(next_motion(placed, joint, pose, rate, acceleration))
     force, torques = np.zeros(6), np.zeros(len(poses))
     for i in reversed(range(len(poses))):  # eq. (14)-(15), from the tip to the base
         force = force + _link_force(vehicle, arm.links[i], motions[i + 1], weights)
         force = to_outer_frame(poses[i], force)
         torques[i] = force[5]
+        force = to_outer_frame(placement_pose(arm.joints[i]), force)
     return to_outer_frame(mounting_pose(arm.base), force), torques
 
 
 def next_motion(
     motion: Motion, joint: Joint, pose: Pose, rate: float, acceleration: float
 ) -> Motion:
-    """Motion of frame i+1 from that of frame i, eq. (2)-(7) and the accelerations after them.
+    """Motion of frame i+1 from that of its joint, eq. (2)-(7) and the accelerations after them.
 
     With distal DH frames the offset r turns with link i+1, so omega_(i+1) goes with it: corrected
     from the print of (4)-(5).

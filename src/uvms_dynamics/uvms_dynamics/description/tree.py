@@ -6,7 +6,8 @@ i lies in it at Tz(d) Tx(a) Rx(alpha), so that the chain is
 
     T_(i-1)_i = [Tz(d) Tx(a) Rx(alpha)]_(i-1) Rz(offset_i) Rz(q_i),
 
-with the arm's base in the place of the first bracket: standard DH, cut at the joints.
+with the arm's base in the place of the first bracket: standard DH, cut at the joints. A joint with
+an `origin` has that in the bracket's place, as in URDF.
 """
 
 from collections import Counter
@@ -17,11 +18,11 @@ import numpy as np
 
 from uvms_dynamics import topics
 from uvms_dynamics.errors import VehicleFileError
-from uvms_dynamics.model import distal_pose
+from uvms_dynamics.model import joint_placements
 from uvms_dynamics.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle.arm import Joint
-from uvms_dynamics.vehicle.frames import Pose, compose, mounting_pose
+from uvms_dynamics.vehicle.frames import Pose, compose, distal_pose, mounting_pose
 from uvms_dynamics.vehicle.vehicle import Vehicle
 
 MAP_FRAME = "map"
@@ -104,12 +105,12 @@ def _thrusters(vehicle: Vehicle) -> Iterator[Branch]:
 
 
 def _arm(vehicle: Vehicle) -> Iterator[Branch]:
-    parent, pose = topics.BODY_FRAME, mounting_pose(vehicle.arm.base)
-    for joint, link in zip(vehicle.arm.joints, vehicle.arm.links, strict=True):
+    arm, parent = vehicle.arm, topics.BODY_FRAME
+    for joint, link, pose in zip(arm.joints, arm.links, joint_placements(arm), strict=True):
         offset = quat_to_matrix(rpy_to_quat(0.0, 0.0, np.radians(joint.offset_deg)))
         yield Branch(link.name, parent, compose(pose, (np.zeros(3), offset)), joint)
-        parent, pose = link.name, distal_pose(joint)
-    yield Branch(TOOL_FRAME, parent, compose(pose, mounting_pose(vehicle.arm.tool)))
+        parent = link.name
+    yield Branch(TOOL_FRAME, parent, compose(distal_pose(arm.joints[-1]), mounting_pose(arm.tool)))
 
 
 def _check_unique(vehicle: Vehicle, what: str, names: list[str]) -> None:

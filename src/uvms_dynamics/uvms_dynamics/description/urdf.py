@@ -14,10 +14,9 @@ import numpy as np
 from uvms_dynamics import topics
 from uvms_dynamics.description.solids import Solid, hull_solids, link_solids, thruster_solid
 from uvms_dynamics.description.tree import HULL_FRAME, Branch, thruster_frame, tree
-from uvms_dynamics.model import distal_pose
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle.arm import Joint, Link
-from uvms_dynamics.vehicle.frames import Pose, compose
+from uvms_dynamics.vehicle.frames import Pose, compose, distal_pose
 from uvms_dynamics.vehicle.hull import Hull
 from uvms_dynamics.vehicle.vehicle import Vehicle
 

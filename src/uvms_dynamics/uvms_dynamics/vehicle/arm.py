@@ -1,4 +1,4 @@
-"""The arm: a serial chain of revolute joints in standard Denavit-Hartenberg form."""
+"""The arm: a serial chain of revolute joints, in Denavit-Hartenberg form or as URDF places them."""
 
 from typing import Annotated
 
@@ -22,14 +22,26 @@ class Mounting(Part):
     rpy_deg: Vector3 = Field(default=(0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees")
 
 
+DH_FIELDS = ("a_m", "alpha_deg", "d_m")
+
+
 class Joint(Part):
-    """A revolute joint: Rz(theta + offset) Tz(d) Tx(a) Rx(alpha), limits and friction."""
+    """A revolute joint about z: its place by DH fields or by an `origin`; limits and friction.
+
+    DH: the link's frame is Rz(theta + offset) Tz(d) Tx(a) Rx(alpha) in the previous link's, so its
+    origin is at the link's far end. With an `origin`, as in URDF: the link's frame is
+    origin Rz(theta + offset) in the previous link's, so its origin is on the link's own joint.
+    """
 
     name: str = Field(min_length=1, description="name in joint_states and joint_command")
-    a_m: float = Field(description="DH link length, m")
-    alpha_deg: float = Field(description="DH twist, degrees")
-    d_m: float = Field(description="DH offset along the joint axis, m")
-    offset_deg: float = Field(default=0.0, description="DH angle at joint angle zero, degrees")
+    a_m: float | None = Field(default=None, description="DH link length, m")
+    alpha_deg: float | None = Field(default=None, description="DH twist, degrees")
+    d_m: float | None = Field(default=None, description="DH offset along the joint axis, m")
+    origin: Mounting | None = Field(
+        default=None,
+        description="instead of the DH fields: the joint in the previous link's frame, angle zero",
+    )
+    offset_deg: float = Field(default=0.0, description="turn about z at joint angle zero, degrees")
     lower_deg: float = Field(description="lower limit, degrees")
     upper_deg: float = Field(description="upper limit, degrees")
     rate_limit_deg_s: float = Field(gt=0.0, description="greatest rate, degrees/s")
@@ -47,6 +59,21 @@ class Joint(Part):
     stop_dissipation_s_rad: float = Field(
         ge=0.0, description="Hunt-Crossley dissipation of the end stops, s/rad"
     )
+
+    @model_validator(mode="after")
+    def _placed_once(self) -> "Joint":
+        given = [name for name in DH_FIELDS if getattr(self, name) is not None]
+        if self.origin is not None and given:
+            raise ValueError(
+                f"is placed twice, by origin and by {', '.join(given)}; leave one of them away"
+            )
+        missing = [name for name in DH_FIELDS if name not in given]
+        if self.origin is None and missing:
+            raise ValueError(
+                f"lacks {', '.join(missing)}: a joint needs {', '.join(DH_FIELDS)}"
+                " (Denavit-Hartenberg) or an origin (as in URDF)"
+            )
+        return self
 
     @model_validator(mode="after")
     def _ordered(self) -> "Joint":
@@ -78,7 +105,7 @@ class Cylinder(DragCylinder):
 
 
 class Link(Part):
-    """The body that joint i moves, in its distal DH frame i."""
+    """The body that joint i moves, in its frame i: the distal DH frame, or URDF's own."""
 
     name: str = Field(min_length=1, description="name of the link")
     cylinder: Cylinder | None = Field(

@@ -1,4 +1,7 @@
-"""Put values in the place of the words `neutral`, `trim`, `spheroid` and `cylinder`."""
+"""Put values in the place of the words `neutral`, `trim`, `spheroid` and `cylinder`.
+
+The hull's attachments become part of its own mass, volume, centres and inertia.
+"""
 
 from typing import Any
 
@@ -7,6 +10,7 @@ import numpy as np
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import shapes
 from uvms_dynamics.vehicle.arm import Arm, Link
+from uvms_dynamics.vehicle.attach import with_attachments
 from uvms_dynamics.vehicle.environment import Environment
 from uvms_dynamics.vehicle.frames import arm_frames
 from uvms_dynamics.vehicle.hull import Hull, Spheroid
@@ -60,6 +64,7 @@ def _expand_hull(hull: Hull, arm: Arm, environment: Environment) -> Hull:
         hull = hull.model_copy(update={"volume_m3": volume})
     if _says(hull, "mass_kg", "neutral"):
         wet = sum(link.mass_kg - density * link.volume_m3 for link in arm.links)
+        wet += sum(a.wet_weight_n / environment.gravity_m_s2 for a in hull.attachments)
         hull = hull.model_copy(update={"mass_kg": density * hull.volume_m3 - wet})
     if _says(hull, "inertia_kg_m2", "spheroid"):
         inertia = shapes.spheroid_inertia(_spheroid(hull, "inertia_kg_m2"), hull.mass_kg)
@@ -67,9 +72,9 @@ def _expand_hull(hull: Hull, arm: Arm, environment: Environment) -> Hull:
     if _says(hull, "added_mass", "spheroid"):
         added = shapes.spheroid_added_mass(_spheroid(hull, "added_mass"), density)
         hull = hull.model_copy(update={"added_mass": added.tolist()})
-    level = _level_cg(hull, arm, density)
+    level = _level_cg(hull, arm, environment)
     cg = [level[i] if value == "trim" else value for i, value in enumerate(hull.cg_m)]
-    return hull.model_copy(update={"cg_m": cg})
+    return with_attachments(hull.model_copy(update={"cg_m": cg}), environment)
 
 
 def _spheroid(hull: Hull, name: str) -> Spheroid:
@@ -83,9 +88,12 @@ def _says(section: Hull | Link, name: str, word: str) -> bool:
     return bool(getattr(section, name) == word)
 
 
-def _level_cg(hull: Hull, arm: Arm, density: float) -> Array:
+def _level_cg(hull: Hull, arm: Arm, environment: Environment) -> Array:
     """CG (3,) of the hull that leaves no moment with the arm stowed (x and y are of use)."""
+    density = environment.water_density_kg_m3
     moment = density * hull.volume_m3 * np.array(hull.cb_m)
+    for extra in hull.attachments:
+        moment -= extra.wet_weight_n / environment.gravity_m_s2 * np.array(extra.position_m)
     frames = arm_frames(arm, np.radians(arm.stowed_deg))[1:]
     for link, (origin, rotation) in zip(arm.links, frames, strict=True):
         moment -= link.mass_kg * (origin + rotation @ link.cg_m)

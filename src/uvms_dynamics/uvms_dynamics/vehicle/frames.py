@@ -1,4 +1,9 @@
-"""Frames of the arm in plain numpy: frame 0 is its base, frame i the distal DH frame of link i."""
+"""Frames of the arm in plain numpy: frame 0 is its base, frame i that of link i.
+
+In link i-1 the joint's frame lies at its placement; it turns about its z, and the link's frame i
+lies in it at the distal pose: T_(i-1)_i = placement Rz(theta) distal. With Denavit-Hartenberg
+fields the placement is the identity, with an `origin` as in URDF the distal pose is.
+"""
 
 import math
 
@@ -11,6 +16,8 @@ from uvms_dynamics.vehicle.arm import Arm, Joint, Mounting
 Pose = tuple[Array, Array]
 """Origin (3,) and rotation matrix (3, 3) of one frame in another."""
 
+IDENTITY: Pose = (np.zeros(3), np.eye(3))
+
 
 def mounting_pose(mounting: Mounting) -> Pose:
     """Pose of a mounted frame, from its position and roll, pitch, yaw."""
@@ -22,18 +29,38 @@ def compose(first: Pose, second: Pose) -> Pose:
     return first[0] + first[1] @ second[0], first[1] @ second[1]
 
 
+def placement_pose(joint: Joint) -> Pose:
+    """The joint's frame at angle and offset zero in the previous link's: its `origin`."""
+    return IDENTITY if joint.origin is None else mounting_pose(joint.origin)
+
+
+def distal_pose(joint: Joint) -> Pose:
+    """The link's frame in the joint's own, which turns with the link: DH's Tz(d) Tx(a) Rx(alpha)."""
+    if joint.a_m is None or joint.alpha_deg is None or joint.d_m is None:
+        return IDENTITY
+    c, s = math.cos(math.radians(joint.alpha_deg)), math.sin(math.radians(joint.alpha_deg))
+    rotation = np.array([[1.0, 0.0, 0.0], [0.0, c, -s], [0.0, s, c]])
+    return np.array([joint.a_m, 0.0, joint.d_m]), rotation
+
+
 def joint_pose(joint: Joint, angle: float) -> Pose:
-    """Pose of frame i in frame i-1: Rz(theta) Tz(d) Tx(a) Rx(alpha), the matrix before eq. (1)."""
+    """Frame i in the joint's placement: Rz(theta) Tz(d) Tx(a) Rx(alpha), before eq. (1)."""
     theta = angle + math.radians(joint.offset_deg)
     c, s = math.cos(theta), math.sin(theta)
-    ca, sa = math.cos(math.radians(joint.alpha_deg)), math.sin(math.radians(joint.alpha_deg))
-    rotation = np.array([[c, -s * ca, s * sa], [s, c * ca, -c * sa], [0.0, sa, ca]])
-    return np.array([joint.a_m * c, joint.a_m * s, joint.d_m]), rotation
+    turn = np.array([[c, -s, 0.0], [s, c, 0.0], [0.0, 0.0, 1.0]])
+    return compose((np.zeros(3), turn), distal_pose(joint))
 
 
 def arm_frames(arm: Arm, q: Array) -> list[Pose]:
     """Frames 0..n of the arm in the body frame; q (n,) rad."""
     frames = [mounting_pose(arm.base)]
     for joint, angle in zip(arm.joints, q, strict=True):
-        frames.append(compose(frames[-1], joint_pose(joint, angle)))
+        placed = compose(frames[-1], placement_pose(joint))
+        frames.append(compose(placed, joint_pose(joint, angle)))
     return frames
+
+
+def joint_frames(arm: Arm, q: Array) -> list[Pose]:
+    """Frame of each joint in the body frame, z along its axis; q (n,) rad."""
+    before = arm_frames(arm, q)[:-1]
+    return [compose(f, placement_pose(j)) for f, j in zip(before, arm.joints, strict=True)]

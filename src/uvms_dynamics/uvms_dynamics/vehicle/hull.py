@@ -4,7 +4,15 @@ from typing import Annotated
 
 from pydantic import Field, field_validator
 
-from uvms_dynamics.vehicle.parts import AddedMass, Inertia, Part, Vector3, Vector6, word
+from uvms_dynamics.vehicle.parts import (
+    AddedMass,
+    Inertia,
+    Part,
+    Vector3,
+    Vector6,
+    unique_names,
+    word,
+)
 
 
 class Spheroid(Part):
@@ -25,6 +33,17 @@ class Spheroid(Part):
         if length is not None and value >= length:
             raise ValueError(f"must be below length_m = {length:g} (a prolate spheroid)")
         return value
+
+
+class Attachment(Part):
+    """Something fixed to the hull that is given by its weight in the water, such as ballast."""
+
+    name: str = Field(min_length=1, description="what it is")
+    position_m: Vector3 = Field(description="of its centre, body frame, m")
+    wet_weight_n: float = Field(description="weight less buoyancy, N; below zero it floats")
+    mass_kg: float = Field(
+        default=0.0, ge=0.0, description="dry mass, kg, a point; 0: the hull's mass counts it"
+    )
 
 
 class Hull(Part):
@@ -49,8 +68,17 @@ class Hull(Part):
     added_mass: Annotated[AddedMass, word("spheroid")] = Field(
         description="about the body origin, SI: 6 diagonal values, 6 rows or `spheroid`"
     )
+    attachments: tuple[Attachment, ...] = Field(
+        default=(), description="ballast, foam, instruments; the loader makes them part of the hull"
+    )
     linear_damping: Vector6 = Field(description="N per m/s and N m per rad/s, each >= 0")
     quadratic_damping: Vector6 = Field(description="N per (m/s)^2 and N m per (rad/s)^2, each >= 0")
+
+    @field_validator("attachments")
+    @classmethod
+    def _named_once(cls, value: tuple[Attachment, ...]) -> tuple[Attachment, ...]:
+        unique_names(value, "attachment")
+        return value
 
     @field_validator("linear_damping", "quadratic_damping")
     @classmethod

@@ -7,6 +7,7 @@ from uvms_dynamics.vehicle.environment import Environment
 from uvms_dynamics.vehicle.hull import Hull
 from uvms_dynamics.vehicle.parts import Part, unique_names
 from uvms_dynamics.vehicle.sensors import Sensors
+from uvms_dynamics.vehicle.tether import Tether
 from uvms_dynamics.vehicle.thrusters import Thruster
 
 
@@ -22,6 +23,9 @@ class Vehicle(Part):
     thrusters: tuple[Thruster, ...] = Field(min_length=1, description="any number of them")
     arm: Arm = Field(description="serial chain of revolute joints")
     sensors: Sensors = Field(description="rates, lever arms, noise")
+    tether: Tether | None = Field(
+        default=None, description="how the trim changes with depth; none: it does not"
+    )
 
     @field_validator("thrusters")
     @classmethod

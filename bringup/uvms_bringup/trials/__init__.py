@@ -1,0 +1,1 @@
+"""Recorded trials of a real vehicle: reading, predicting, scoring, identifying from them."""

@@ -1,0 +1,50 @@
+"""How well the model predicts trials that its constants were not fitted to."""
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any
+
+from uvms_bringup.trials.fit import Fit, fit, group_of
+from uvms_bringup.trials.identify import Tell, courses_of, identify
+from uvms_bringup.trials.parameters import changed
+from uvms_bringup.trials.predict import Course, drive_model, dynamic
+from uvms_bringup.trials.score import Score, medians, scores
+from uvms_dynamics.errors import VehicleFileError
+from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_dynamics.yaml_text import read_yaml
+
+
+def cross_validated(trials: str, vehicle: str, tell: Tell) -> str:
+    """Medians over the trials, each predicted by a fit without it and without its motion."""
+    data = read_yaml(Path(vehicle), vehicle, VehicleFileError)
+    courses = courses_of(trials)
+    full = identify(data, courses, tell).fit
+    lines = []
+    for what, key in (("trial", lambda name: name), ("motion", group_of)):
+        roll, pitch = medians(left_out(data, courses, full, key, tell))
+        lines.append(f"fitted without the {what} that is scored, median of {len(courses)}:"
+                     f" roll {roll.rmse:.3f} deg, pitch {pitch.rmse:.3f} deg")  # fmt: skip
+    return "\n".join(lines)
+
+
+def left_out(
+    data: Any, courses: Sequence[Course], full: Fit, key: Callable[[str], str], tell: Tell
+) -> list[tuple[Score, Score]]:
+    """Scores of each course by a fit to those of other keys, begun at the full fit."""
+    data = changed(
+        data, {p.path: float(v) for p, v in zip(full.parameters, full.values, strict=True)}
+    )
+    found: dict[str, tuple[Score, Score]] = {}
+    for out in sorted({key(course.trial.name) for course in courses}):
+        tell(f"without {out}")
+        rest = [course for course in courses if key(course.trial.name) != out]
+        part = fit(data, rest, full.parameters)
+        new = changed(
+            data, {p.path: float(v) for p, v in zip(part.parameters, part.values, strict=True)}
+        )
+        model, load = drive_model(vehicle_from_data(new))
+        for course in courses:
+            if key(course.trial.name) == out:
+                said = dynamic(course, model, load)
+                found[course.trial.name] = scores(course.trial, said.tilt)
+    return [found[course.trial.name] for course in courses]

@@ -1,0 +1,109 @@
+"""`uvms identify`: fit what the trials determine, and refuse the rest."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uvms_bringup.trials.fit import Fit, fit
+from uvms_bringup.trials.parameters import Parameter, present, value_at
+from uvms_bringup.trials.predict import Course, make_course
+from uvms_bringup.trials.read import read_trials
+from uvms_bringup.trials.rewrite import rewritten
+from uvms_dynamics.errors import VehicleFileError
+from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_dynamics.yaml_text import read_yaml
+
+SIGNIFICANCE = 2.0
+"""Standard errors by which a thing that may be absent must differ from nothing."""
+
+INSEPARABLE = 0.92
+"""Correlation of two errors above which the trials show one combination and not both."""
+
+Tell = Callable[[str], None]
+
+
+@dataclass
+class Identified:
+    """What was fitted, and what was not and why."""
+
+    data: Any  # of the vehicle file, as it was
+    fit: Fit
+    refused: dict[str, str] = field(default_factory=dict)
+
+    @property
+    def values(self) -> dict[str, float]:
+        """The identified numbers, by path in the file."""
+        pairs = zip(self.fit.parameters, self.fit.values, strict=True)
+        return {parameter.path: float(value) for parameter, value in pairs}
+
+
+def identify(data: Any, courses: Sequence[Course], tell: Tell = lambda line: None) -> Identified:
+    """Fit all candidates; while one is not determined, give up the worst and fit the others."""
+    parameters, refused = present(data)
+    while True:
+        tell(f"fitting {len(parameters)} constants to {len(courses)} trials")
+        found = fit(data, courses, parameters, tell)
+        worst, reason = _worst(found)
+        if worst is None:
+            return Identified(data, found, refused)
+        tell(f"giving up {worst.name}: {reason}")
+        refused[worst.name] = reason
+        parameters = [p for p in parameters if p is not worst]
+
+
+def _worst(found: Fit) -> tuple[Parameter | None, str]:
+    """The parameter that is determined least, if any is not well enough, and why."""
+    spread = found.errors / np.array([p.worst_error for p in found.parameters])
+    k = int(np.argmax(spread))
+    parameter, error = found.parameters[k], found.errors[k]
+    if spread[k] > 1.0:
+        unit = parameter.unit
+        return parameter, f"standard error {error:.2g} {unit}; at most {parameter.worst_error:g}"
+    for p, value, error in zip(found.parameters, found.values, found.errors, strict=True):
+        if p.may_be_absent and abs(value) < SIGNIFICANCE * error:
+            return p, f"{value:.2g} +- {error:.2g} {p.unit} may as well be none"
+    together = np.abs(np.triu(found.correlation, 1))
+    i, j = np.unravel_index(np.argmax(together), together.shape)
+    if together[i, j] > INSEPARABLE:
+        k, other = (i, j) if spread[i] > spread[j] else (j, i)
+        name = found.parameters[other].name
+        return found.parameters[k], f"cannot be told from {name} (correlation {together[i, j]:.2f})"
+    return None, ""
+
+
+def report(found: Identified) -> str:
+    """Table of the identified constants with errors, and the refused ones with reasons."""
+    lines = [f"{'constant':<30}{'file':>12}{'identified':>12}{'std error':>11}  unit"]
+    correlation = np.abs(found.fit.correlation) - np.eye(len(found.fit.parameters))
+    for k, p in enumerate(found.fit.parameters):
+        old, new, error = value_at(found.data, p.path), found.fit.values[k], found.fit.errors[k]
+        line = f"{p.name:<30}{old:>12.5g}{new:>12.5g}{error:>11.2g}  {p.unit}"
+        other = int(np.argmax(correlation[k]))
+        if correlation[k, other] > 0.8:
+            line += f"  (goes with {found.fit.parameters[other].name}:"
+            line += f" {found.fit.correlation[k, other]:+.2f})"
+        lines.append(line)
+    lines += [f"not fitted: {name}: {reason}. The file's value stays."
+              for name, reason in found.refused.items()]  # fmt: skip
+    lines.append(f"rms of roll and pitch: {found.fit.rms_deg:.3f} deg")
+    return "\n".join(lines)
+
+
+def courses_of(folder: str) -> list[Course]:
+    """The folder's trials, ready to be driven."""
+    return [make_course(trial) for trial in read_trials(folder)]
+
+
+def write_identified(trials: str, vehicle: str, output: str, tell: Tell) -> str:
+    """Identify, write the vehicle file with its comments, and return the report."""
+    data = read_yaml(Path(vehicle), vehicle, VehicleFileError)
+    vehicle_from_data(data, vehicle)  # its errors name the file and come before the work
+    found = identify(data, courses_of(trials), tell)
+    text = rewritten(Path(vehicle).read_text(encoding="utf-8"), found.values)
+    target = Path(output)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    target.write_text(text, encoding="utf-8")
+    return f"{report(found)}\nwritten: {target}"

@@ -1,0 +1,122 @@
+"""Predict a trial: the full dynamic model, and two plain models to compare it with."""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_bringup.errors import TrialError
+from uvms_bringup.trials.convention import (
+    down_direction,
+    joint_angles,
+    position_down,
+    tilt_deg,
+)
+from uvms_bringup.trials.motion import joint_motion
+from uvms_bringup.trials.read import Trial
+from uvms_bringup.trials.start import TRIM_GAIN, Start, measured_start
+from uvms_dynamics import Model, Vehicle, build_model, restoring_wrench
+from uvms_dynamics.prescribed import JointMotion, Load, float_freely
+from uvms_dynamics.rotations import quat_to_matrix
+from uvms_dynamics.signals import Array
+
+_LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
+_ON_ITS_SIDE = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])  # rolled by 90 degrees
+
+
+class Course(NamedTuple):
+    """A trial, made ready to be driven: all of it that does not depend on the vehicle."""
+
+    trial: Trial
+    motion: JointMotion
+    index: Array  # (k,) the samples among the states
+    start: Start
+    depth: Array  # (k,) measured, m; for `uvms identify` alone
+
+
+class Prediction(NamedTuple):
+    """What a model says of a trial, at its samples."""
+
+    tilt: Array  # (k, 2) roll and pitch, degrees, the trials' convention
+    depth: Array  # (k,) m
+
+
+def make_course(trial: Trial) -> Course:
+    """The trial with its arm's motion and its initial state worked out."""
+    motion, index = joint_motion(trial)
+    depth = position_down(trial.position)[:, 2]
+    return Course(trial, motion, index, measured_start(trial), depth)
+
+
+def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
+    """Tables of the vehicle and its tether's load; raises TrialError for another number of joints."""
+    if vehicle.n_joints != 4:
+        raise TrialError(
+            f"vehicle {vehicle.name} has {vehicle.n_joints} joints; the trials' arm has 4: base,"
+            " shoulder, elbow, wrist"
+        )
+    tether = vehicle.tether
+    if tether is None:
+        return build_model(vehicle), Load()
+    load = Load(
+        weight_per_m=tether.weight_per_m_n,
+        moment_per_m=np.array(tether.moment_per_m_nm),
+        reference_depth=tether.reference_depth_m,
+    )
+    return build_model(vehicle), load
+
+
+def dynamic(course: Course, model: Model, load: Load, gain: float = TRIM_GAIN) -> Prediction:
+    """Integrate from the measured initial state, driven by the measured joints."""
+    load = load._replace(moment=load.moment + trim(course, model, load, gain))
+    states = float_freely(model, course.start.state, course.motion, load)[course.index]
+    down = np.array([quat_to_matrix(quaternion)[2] for quaternion in states[:, 3:7]])
+    return Prediction(tilt_deg(down), states[:, 2])
+
+
+def trim(course: Course, model: Model, load: Load, gain: float) -> Array:
+    """First moment (3,) that turns the model's rest towards the tilt measured at the start.
+
+    Nobody knows the ballast, trapped air and pull of the tether of the day, nor how the markers
+    sat. What the vehicle's first reading has beside the model's rest is partly that, which stays,
+    and partly wobble and noise, which do not: `gain` of it is taken to stay.
+    """
+    first = first_moment(model, course.motion.q[0]) + _loaded(load, course.start.state[2])
+    rest = tilt_deg(_direction(first))
+    wanted = down_direction(rest + gain * (course.start.tilt - rest))
+    added = first[2] * wanted / wanted[2] - first
+    return np.array([added[0], added[1], 0.0])
+
+
+def quasi_static(course: Course, model: Model, load: Load, depth: Array) -> Prediction:
+    """Balance of weight and buoyancy at every sample, depth (k,) as given; no initial state."""
+    angles = joint_angles(course.trial.alpha)
+    moments = [
+        first_moment(model, q) + _loaded(load, d) for q, d in zip(angles, depth, strict=True)
+    ]
+    return Prediction(tilt_deg(_direction(np.array(moments))), depth)
+
+
+def constant(course: Course) -> Prediction:
+    """Nothing ever moves."""
+    count = len(course.trial.t)
+    depth = np.full(count, course.start.state[2])
+    return Prediction(np.tile(course.start.tilt, (count, 1)), depth)
+
+
+def first_moment(model: Model, q: Array) -> Array:
+    """Sum of position times weight less buoyancy (3,), N m, body frame.
+
+    Read off two attitudes: m x (0, 0, 1) = (m_y, -m_x, 0) and m x (0, 1, 0) = (-m_z, 0, m_x).
+    """
+    level = restoring_wrench(model, _LEVEL, q)
+    side = restoring_wrench(model, _ON_ITS_SIDE, q)
+    return np.array([-level[4], level[3], -side[3]])
+
+
+def _loaded(load: Load, depth: float) -> Array:
+    return np.asarray(load.moment + load.moment_per_m * (depth - load.reference_depth))
+
+
+def _direction(moment: Array) -> Array:
+    """Down at rest: weight hangs below buoyancy, along the first moment."""
+    return np.asarray(moment / np.linalg.norm(moment, axis=-1, keepdims=True))

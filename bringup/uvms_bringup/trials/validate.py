@@ -1,0 +1,63 @@
+"""`uvms validate`: hold the model against recorded trials."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from uvms_bringup.trials.predict import (
+    Course,
+    Prediction,
+    constant,
+    drive_model,
+    dynamic,
+    make_course,
+    quasi_static,
+)
+from uvms_bringup.trials.read import Trial, read_trials
+from uvms_bringup.trials.score import scores
+from uvms_bringup.trials.table import Scores, table_text, write_csv
+from uvms_dynamics import Vehicle, load_vehicle
+
+DYNAMIC, QUASI_STATIC, CONSTANT = "dynamic model", "quasi-static", "constant"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """A trial and what each model says of it."""
+
+    trial: Trial
+    said: dict[str, Prediction]
+
+
+def outcomes(vehicle: Vehicle, trials: list[Trial]) -> Iterator[Outcome]:
+    """Every trial in turn, predicted by the full model and by the plain ones."""
+    model, load = drive_model(vehicle)
+    for trial in trials:
+        course: Course = make_course(trial)
+        moving = dynamic(course, model, load)
+        still = quasi_static(course, model, load, moving.depth)
+        yield Outcome(trial, {DYNAMIC: moving, QUASI_STATIC: still, CONSTANT: constant(course)})
+
+
+def table(found: list[Outcome]) -> Scores:
+    """Scores by model, over the trials."""
+    models = found[0].said
+    return {m: [scores(each.trial, each.said[m].tilt) for each in found] for m in models}
+
+
+def validate(trials: str, vehicle: str, output: str | None, figures: bool) -> str:
+    """Predict, write what was asked for, and return the table."""
+    found = list(outcomes(load_vehicle(vehicle), read_trials(trials)))
+    text = table_text([each.trial.name for each in found], table(found))
+    if output is None:
+        return text
+    folder = Path(output)
+    folder.mkdir(parents=True, exist_ok=True)
+    for each in found:
+        write_csv(each.trial, each.said[DYNAMIC].tilt, folder)
+    (folder / "table.txt").write_text(text + "\n", encoding="utf-8")
+    if figures:
+        from uvms_bringup.trials.figures import draw  # matplotlib takes its time
+
+        draw(found, folder)
+    return text

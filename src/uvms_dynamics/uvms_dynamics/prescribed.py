@@ -1,0 +1,128 @@
+"""The floating vehicle under a prescribed motion of its arm: hybrid dynamics.
+
+The joints follow given q(t), q_dot(t), q_ddot(t), whatever torque that takes; the base is free:
+
+    nu_dot = M_bb(q)^-1 (tau - ID(nu_dot = 0, q_ddot)[:6]),
+
+with ID the inverse dynamics of the whole system (Featherstone 2008, sec. 9.2; Fossen's nu). The
+water is still, so that nu_r = nu.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_dynamics.kernels import inverse_dynamics, mass_matrix
+from uvms_dynamics.kernels.jit import kernel
+from uvms_dynamics.model import Model
+from uvms_dynamics.signals import Array
+
+STATE = 13
+"""Position (3,) and quaternion (4,) in the world, velocity (6,) in the body frame."""
+
+
+class JointMotion(NamedTuple):
+    """The arm's motion over m steps: rows at the begin, the middle and the end of each step."""
+
+    steps: Array  # (m,) s
+    q: Array  # (2m+1, n) rad
+    q_dot: Array  # (2m+1, n)
+    q_ddot: Array  # (2m+1, n)
+
+
+class Load(NamedTuple):
+    """A weight (N, down) and its first moment (3,) about the body origin, linear in the depth."""
+
+    weight: float = 0.0
+    moment: Array = np.zeros(3)  # N m: position times weight, body frame
+    weight_per_m: float = 0.0
+    moment_per_m: Array = np.zeros(3)
+    reference_depth: float = 0.0  # m, where the part per metre is nothing
+
+
+def float_freely(model: Model, start: Array, motion: JointMotion, load: Load) -> Array:
+    """States (m+1, 13) from the state `start` (13,), by classical Runge-Kutta steps."""
+    table = np.zeros(10)
+    table[0], table[1:4] = load.weight, load.moment
+    table[4], table[5:8], table[8] = load.weight_per_m, load.moment_per_m, load.reference_depth
+    inverse = np.linalg.inv(base_inertia(model, motion.q))
+    out = np.empty((len(motion.steps) + 1, STATE))
+    out[0] = start
+    _integrate(model, table, inverse, motion, out)
+    return out
+
+
+@kernel
+def base_inertia(model, q):
+    """M_bb (rows, 6, 6) of the system with its joints locked, for each row of q (rows, n)."""
+    out = np.empty((q.shape[0], 6, 6))
+    for row in range(q.shape[0]):
+        out[row] = mass_matrix(model, q[row])[:6, :6]
+    return out
+
+
+@kernel
+def base_acceleration(model, load, inverse, x, q, q_dot, q_ddot):
+    """nu_dot (6,) of the base at the state x (13,); load (10,) as `float_freely` packs it."""
+    quat = x[3:7]
+    needed = inverse_dynamics(model, quat, x[7:], np.zeros(6), q, q_dot, q_ddot)
+    down = _down(quat)
+    below = x[2] - load[8]
+    weight = load[0] + load[4] * below
+    moment = load[1:4] + load[5:8] * below
+    tau = -needed[:6]
+    tau[:3] += weight * down
+    tau[3] += moment[1] * down[2] - moment[2] * down[1]
+    tau[4] += moment[2] * down[0] - moment[0] * down[2]
+    tau[5] += moment[0] * down[1] - moment[1] * down[0]
+    out = np.zeros(6)
+    for i in range(6):
+        for j in range(6):
+            out[i] += inverse[i, j] * tau[j]
+    return out
+
+
+@kernel
+def _integrate(model, load, inverse, motion, states):
+    steps, q, q_dot, q_ddot = motion
+    slope = np.empty((4, 13))
+    trial = np.empty(13)
+    for s in range(steps.shape[0]):
+        h = steps[s]
+        for k in range(4):
+            row = 2 * s + (k + 1) // 2
+            trial[:] = states[s]
+            if k > 0:
+                trial += (h if k == 3 else 0.5 * h) * slope[k - 1]
+            trial[3:7] /= np.sqrt(np.sum(trial[3:7] ** 2))
+            _pose_rate(trial, slope[k])
+            slope[k, 7:] = base_acceleration(
+                model, load, inverse[row], trial, q[row], q_dot[row], q_ddot[row]
+            )
+        total = slope[0] + 2.0 * (slope[1] + slope[2]) + slope[3]
+        states[s + 1] = states[s] + h / 6.0 * total
+        states[s + 1, 3:7] /= np.sqrt(np.sum(states[s + 1, 3:7] ** 2))
+
+
+@kernel
+def _down(quat):
+    """World's down (0, 0, 1) in the body frame."""
+    x, y, z, w = quat[0], quat[1], quat[2], quat[3]
+    return np.array(
+        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)]
+    )
+
+
+@kernel
+def _pose_rate(x, out):
+    """p_dot = R v and the quaternion's rate 1/2 quat (omega, 0), as `integrator` has them."""
+    a, b, c, d = x[3], x[4], x[5], x[6]
+    u, v, w, p, q, r = x[7], x[8], x[9], x[10], x[11], x[12]
+    t0, t1, t2 = b * w - c * v + d * u, c * u - a * w + d * v, a * v - b * u + d * w
+    out[0] = u + 2.0 * (b * t2 - c * t1)
+    out[1] = v + 2.0 * (c * t0 - a * t2)
+    out[2] = w + 2.0 * (a * t1 - b * t0)
+    out[3] = 0.5 * (d * p + b * r - c * q)
+    out[4] = 0.5 * (d * q + c * p - a * r)
+    out[5] = 0.5 * (d * r + a * q - b * p)
+    out[6] = -0.5 * (a * p + b * q + c * r)
