@@ -13,7 +13,7 @@ from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Hull, Link, Vehicle
 from uvms_dynamics.vehicle.arm import Arm
-from uvms_dynamics.vehicle.frames import Pose, joint_pose, mounting_pose
+from uvms_dynamics.vehicle.frames import joint_pose, mounting_pose, placement_pose, Pose
 from uvms_dynamics.vehicle.shapes import move_to_origin
 
 
@@ -49,11 +49,13 @@ def kirchhoff_coriolis(inertia: Array, twist: Array) -> Array:
 
 
 def link_jacobians(arm: Arm, q: Array, q_dot: Array) -> Iterator[tuple[Array, Array]]:
-    """J (6, 6+n), from zeta to the twist of each link in its own DH frame, and its derivative."""
+    """J (6, 6+n), from zeta to the twist of each link in its own frame, and its derivative."""
     jacobian = np.zeros((6, 6 + len(q)))
     jacobian[:, :6] = _to_inner_frame(*_inverse(mounting_pose(arm.base)))
     slope = np.zeros_like(jacobian)
     for i, (joint, angle, rate) in enumerate(zip(arm.joints, q, q_dot, strict=True)):
+        place = _to_inner_frame(*_inverse(placement_pose(joint)))
+        jacobian, slope = place @ jacobian, place @ slope
         offset, turn = _inverse(joint_pose(joint, angle))
         # the frame turns about the outer z axis: d/dt R^T = -R^T [z]x q_dot, and r is constant
         turning = -rate * turn @ skew(np.array([0.0, 0.0, 1.0]))
