@@ -136,7 +136,9 @@ def run(model, controller, state, reference, duration, *, allocator: ThrustAlloc
         stamp = to_nanoseconds(k * PERIOD)
         seen = state if noise is None else noise(k, state)
         index = min(k, reference.times.size - 1)
-        disturbance = Wrench(stamp, observed(observer or model, seen, reference.q_ddot[index]))
+        disturbance = Wrench(
+            stamp, observed(model if observer is None else observer, seen, reference.q_ddot[index])
+        )
         odometry, joints = seen.estimates(stamp)
         wrench, joint_command = controller.step(odometry, joints, disturbance, reference)
         yield k * PERIOD, state, wrench.wrench, joint_command.effort
