@@ -13,7 +13,7 @@ from uvms_dynamics.rotations import skew
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Hull, Link, Vehicle
 from uvms_dynamics.vehicle.arm import Arm
-from uvms_dynamics.vehicle.frames import joint_pose, mounting_pose, placement_pose, Pose
+from uvms_dynamics.vehicle.frames import Pose, joint_pose, mounting_pose, placement_pose
 from uvms_dynamics.vehicle.shapes import move_to_origin
 
 

@@ -1,6 +1,6 @@
 """The arm: a serial chain of revolute joints, in Denavit-Hartenberg form or as URDF places them."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
@@ -96,6 +96,9 @@ class DragCylinder(Part):
     )
 
 
+CYLINDER: Any = "cylinder"  # the word, of any field's type
+
+
 class Cylinder(DragCylinder):
     """The shape behind every field of a link that says `cylinder`."""
 
@@ -105,7 +108,10 @@ class Cylinder(DragCylinder):
 
 
 class Link(Part):
-    """The body that joint i moves, in its frame i: the distal DH frame, or URDF's own."""
+    """The body that joint i moves, in its frame i: the distal DH frame, or URDF's own.
+
+    What is not said follows from the section `cylinder`.
+    """
 
     name: str = Field(min_length=1, description="name of the link")
     cylinder: Cylinder | None = Field(
@@ -113,18 +119,24 @@ class Link(Part):
     )
     mass_kg: float = Field(gt=0.0, description="dry mass, kg")
     volume_m3: Annotated[float, word("cylinder")] = Field(
-        gt=0.0, description="displaced volume, m^3, or `cylinder`"
+        default=CYLINDER, gt=0.0, description="displaced volume, m^3, or `cylinder`"
     )
-    cg_m: Annotated[Vector3, word("cylinder")] = Field(description="m, or `cylinder`: its middle")
-    cb_m: Annotated[Vector3, word("cylinder")] = Field(description="m, or `cylinder`: its middle")
+    cg_m: Annotated[Vector3, word("cylinder")] = Field(
+        default=CYLINDER, description="m, or `cylinder`: its middle"
+    )
+    cb_m: Annotated[Vector3, word("cylinder")] = Field(
+        default=CYLINDER, description="m, or `cylinder`: its middle"
+    )
     inertia_kg_m2: Annotated[Inertia, word("cylinder")] = Field(
-        description="about the CG, link axes, kg m^2: 3 diagonal values, 3 rows or `cylinder`"
+        default=CYLINDER,
+        description="about the CG, link axes, kg m^2: 3 diagonal values, 3 rows or `cylinder`",
     )
     added_mass: Annotated[AddedMass, word("cylinder")] = Field(
-        description="about the link frame's origin, SI: 6 diagonal values, 6 rows or `cylinder`"
+        default=CYLINDER,
+        description="about the link frame's origin, SI: 6 diagonal values, 6 rows or `cylinder`",
     )
     drag: Annotated[tuple[DragCylinder, ...], word("cylinder")] = Field(
-        description="cylinders that feel cross-flow drag, or `cylinder`"
+        default=CYLINDER, description="cylinders that feel cross-flow drag, or `cylinder`"
     )
 
 

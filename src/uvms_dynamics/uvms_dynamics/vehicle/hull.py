@@ -1,6 +1,6 @@
 """The vehicle without its arm: mass, volume, added mass and damping."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from pydantic import Field, field_validator
 
@@ -13,6 +13,10 @@ from uvms_dynamics.vehicle.parts import (
     unique_names,
     word,
 )
+
+
+SPHEROID: Any = "spheroid"  # the words, of any field's type
+NEUTRAL: Any = "neutral"
 
 
 class Spheroid(Part):
@@ -47,26 +51,33 @@ class Attachment(Part):
 
 
 class Hull(Part):
-    """Hull in the body frame (forward-starboard-down); damping and added mass are positive."""
+    """Hull in the body frame (forward-starboard-down); damping and added mass are positive.
+
+    What is not said of its shape follows from the section `spheroid`.
+    """
 
     spheroid: Spheroid | None = Field(
         default=None, description="shape behind every field that says `spheroid`"
     )
     volume_m3: Annotated[float, word("spheroid")] = Field(
-        gt=0.0, description="displaced volume, m^3, or `spheroid`"
+        default=SPHEROID, gt=0.0, description="displaced volume, m^3, or `spheroid`"
     )
     mass_kg: Annotated[float, word("neutral")] = Field(
-        gt=0.0, description="dry mass, kg, or `neutral`: vehicle and arm displace their own mass"
+        default=NEUTRAL,
+        gt=0.0,
+        description="dry mass, kg, or `neutral`: vehicle and arm displace their own mass",
     )
     cg_m: tuple[Annotated[float, word("trim")], Annotated[float, word("trim")], float] = Field(
         description="centre of gravity, m; x and y may be `trim`: level with the arm stowed"
     )
     cb_m: Vector3 = Field(description="centre of buoyancy, m")
     inertia_kg_m2: Annotated[Inertia, word("spheroid")] = Field(
-        description="about the CG, body axes, kg m^2: 3 diagonal values, 3 rows or `spheroid`"
+        default=SPHEROID,
+        description="about the CG, body axes, kg m^2: 3 diagonal values, 3 rows or `spheroid`",
     )
     added_mass: Annotated[AddedMass, word("spheroid")] = Field(
-        description="about the body origin, SI: 6 diagonal values, 6 rows or `spheroid`"
+        default=SPHEROID,
+        description="about the body origin, SI: 6 diagonal values, 6 rows or `spheroid`",
     )
     attachments: tuple[Attachment, ...] = Field(
         default=(), description="ballast, foam, instruments; the loader makes them part of the hull"
