@@ -7,10 +7,9 @@ import mujoco
 import numpy as np
 
 from uvms_dynamics import Vehicle, matrix_to_quat, quat_multiply
-from uvms_dynamics.vehicle.frames import distal_pose
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Hull, Link
-from uvms_dynamics.vehicle.frames import Pose, mounting_pose
+from uvms_dynamics.vehicle.frames import Pose, distal_pose, mounting_pose
 
 FLUIDS = ("inertia_box", "ellipsoid")
 """MuJoCo's two models: a box of the body's inertia, which it takes by default, or an ellipsoid."""

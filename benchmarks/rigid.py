@@ -7,9 +7,8 @@ import pinocchio as pin
 from motions import Motion
 
 from uvms_dynamics import Vehicle
-from uvms_dynamics.vehicle.frames import distal_pose
 from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle.frames import mounting_pose
+from uvms_dynamics.vehicle.frames import distal_pose, mounting_pose
 
 ABA = "pinocchio.aba called from Python, rigid bodies alone"
 
