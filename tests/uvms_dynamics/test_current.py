@@ -16,7 +16,7 @@ from uvms_dynamics import (
     quat_to_matrix,
     thruster_matrix,
 )
-from uvms_dynamics.coriolis import body_inertia
+from uvms_dynamics.readable.coriolis import body_inertia
 from uvms_dynamics.vehicle import vehicle_from_data
 
 CURRENT = np.array([0.3, -0.2, 0.0])
