@@ -13,7 +13,7 @@ from uvms_bringup.trials.convention import (
 )
 from uvms_bringup.trials.motion import joint_motion
 from uvms_bringup.trials.read import Trial
-from uvms_bringup.trials.start import TRIM_GAIN, Start, measured_start
+from uvms_bringup.trials.start import TRIM_FADES_S, TRIM_STAYS, Start, measured_start
 from uvms_dynamics import Model, Vehicle, build_model, restoring_wrench
 from uvms_dynamics.prescribed import JointMotion, Load, float_freely
 from uvms_dynamics.rotations import quat_to_matrix
@@ -65,26 +65,30 @@ def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
     return build_model(vehicle), load
 
 
-def dynamic(course: Course, model: Model, load: Load, gain: float = TRIM_GAIN) -> Prediction:
+def dynamic(course: Course, model: Model, load: Load) -> Prediction:
     """Integrate from the measured initial state, driven by the measured joints."""
-    load = load._replace(moment=load.moment + trim(course, model, load, gain))
+    load = trimmed(course, model, load)
     states = float_freely(model, course.start.state, course.motion, load)[course.index]
     down = np.array([quat_to_matrix(quaternion)[2] for quaternion in states[:, 3:7]])
     return Prediction(tilt_deg(down), states[:, 2])
 
 
-def trim(course: Course, model: Model, load: Load, gain: float) -> Array:
-    """First moment (3,) that turns the model's rest towards the tilt measured at the start.
+def trimmed(course: Course, model: Model, load: Load) -> Load:
+    """The load with the first moment that holds the vehicle at the tilt measured at the start.
 
     Nobody knows the ballast, trapped air and pull of the tether of the day, nor how the markers
-    sat. What the vehicle's first reading has beside the model's rest is partly that, which stays,
-    and partly wobble and noise, which do not: `gain` of it is taken to stay.
+    sat. A vehicle that starts at rest beside the model's rest shows that sum: a part of it stays
+    for the trial, the other wanders off and is forgotten (the best guess of a constant plus a
+    first-order Gauss-Markov process of which one value is known).
     """
     first = first_moment(model, course.motion.q[0]) + _loaded(load, course.start.state[2])
-    rest = tilt_deg(_direction(first))
-    wanted = down_direction(rest + gain * (course.start.tilt - rest))
+    wanted = down_direction(course.start.tilt)
     added = first[2] * wanted / wanted[2] - first
-    return np.array([added[0], added[1], 0.0])
+    return load._replace(
+        moment=load.moment + TRIM_STAYS * added,
+        moment_fading=(1.0 - TRIM_STAYS) * added,
+        fading_time=TRIM_FADES_S,
+    )
 
 
 def quasi_static(course: Course, model: Model, load: Load, depth: Array) -> Prediction:
