@@ -55,7 +55,7 @@ PERIOD = "is not a multiple of"
         (["--vehicle", "none.yaml"], "none.yaml: cannot be read: No such file or directory"),
         (
             ["--vehicle", "foo"],
-            "unknown vehicle 'foo'; choose one of reference_auv, or a YAML file",
+            "unknown vehicle 'foo'; choose one of bluerov2_alpha5, reference_auv, or a YAML file",
         ),
         (
             ["--pace", "realtime:0"],
@@ -143,7 +143,8 @@ PERIOD = "is not a multiple of"
         (
             ["--set", "vehicle.hull.mas_kg=190"],
             "override hull.mas_kg: hull has no 'mas_kg'; choose from spheroid, volume_m3, mass_kg,"
-            " cg_m, cb_m, inertia_kg_m2, added_mass, linear_damping, quadratic_damping",
+            " cg_m, cb_m, inertia_kg_m2, added_mass, attachments, linear_damping,"
+            " quadratic_damping",
         ),
     ],
 )

@@ -9,8 +9,8 @@ from made_trials import DATA, VEHICLE, made_trial, write_trial
 
 from uvms_bringup.cli import main
 from uvms_bringup.errors import TrialError
-from uvms_bringup.trials.fit import fit, group_of
 from uvms_bringup.trials import identify as identify_module
+from uvms_bringup.trials.fit import fit, group_of
 from uvms_bringup.trials.identify import courses_of, identify, report
 from uvms_bringup.trials.parameters import CANDIDATES, changed, present, value_at
 from uvms_bringup.trials.predict import make_course
@@ -114,7 +114,7 @@ def test_nothing_at_all_is_an_error(data):
 
 
 def test_two_trials_do_not_show_errors(data, made):
-    with pytest.raises(TrialError, match="2 trials do not show how well .* at least 3"):
+    with pytest.raises(TrialError, match=r"2 trials do not show how well .* at least 3"):
         fit(data, [make_course(trial) for trial in made[1][:2]], chosen(data, *STATIC))
 
 
@@ -136,9 +136,13 @@ class TestVehicleFile:
 
     def test_only_the_numbers_change(self):
         text = VEHICLE.read_text(encoding="utf-8")
-        new = rewritten(text, {"hull.cb_m.2": (-0.0312345678, 3e-4), "arm.base.rpy_deg.2": (5.0, 0.5)})
+        new = rewritten(
+            text, {"hull.cb_m.2": (-0.0312345678, 3e-4), "arm.base.rpy_deg.2": (5.0, 0.5)}
+        )
         before, after = text.splitlines(), new.splitlines()
-        different = [k for k, pair in enumerate(zip(before, after, strict=True)) if len(set(pair)) > 1]
+        different = [
+            k for k, pair in enumerate(zip(before, after, strict=True)) if len(set(pair)) > 1
+        ]
         assert len(different) == 2
         assert "-0.03123] # [id]" in after[different[0]]
         data = yaml.safe_load(new)

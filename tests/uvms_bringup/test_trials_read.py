@@ -49,7 +49,9 @@ def test_a_missing_value_is_named_by_line_and_column(tmp_path, lines):
 
 def test_a_missing_column(tmp_path, lines):
     lines[0] = HEADER.replace("q_e", "q_f").replace("pitch", "nose")
-    assert refusal(tmp_path, lines).startswith("line 1: lacks the column pitch, q_e; a trial has t,")
+    assert refusal(tmp_path, lines).startswith(
+        "line 1: lacks the column pitch, q_e; a trial has t,"
+    )
 
 
 def test_time_must_go_on(tmp_path, lines):

@@ -37,7 +37,13 @@ def test_it_is_forward_dynamics_when_driven_by_its_joint_accelerations(seed, n):
     whole = forward_dynamics(model, motion.quat, motion.nu, motion.q, motion.q_dot, tau)
     inverse = np.linalg.inv(base_inertia(model, motion.q[None]))[0]
     base = base_acceleration(
-        model, np.zeros(4), inverse, state(motion.quat, motion.nu), motion.q, motion.q_dot, whole[6:]
+        model,
+        np.zeros(4),
+        inverse,
+        state(motion.quat, motion.nu),
+        motion.q,
+        motion.q_dot,
+        whole[6:],
     )
     np.testing.assert_allclose(base, whole[:6], rtol=1e-9, atol=1e-9 * np.abs(whole).max())
 
@@ -68,7 +74,7 @@ def test_a_load_is_an_attachment():
 
 
 def test_a_load_changes_with_depth_and_fades_with_time():
-    """At a given depth, and at once, those parts are the constant ones; after long, none is left."""
+    """At a given depth, and at once, those parts are the constant ones; later one is gone."""
     model, motion = build_model(random_vehicle(45, 2)), still(np.zeros(2), 1, 1e-3)
     deep = state(LEVEL)
     deep[2] = 3.0

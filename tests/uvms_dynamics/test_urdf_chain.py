@@ -133,7 +133,7 @@ class TestAttachments:
         np.testing.assert_allclose(wrench, 0.0, atol=1e-9)
 
     def test_names_differ(self):
-        with pytest.raises(VehicleFileError, match="attachment names must differ; .*: lead"):
+        with pytest.raises(VehicleFileError, match=r"attachment names must differ; .*: lead"):
             self.with_extras((self.EXTRAS[0], self.EXTRAS[0]))
 
 

@@ -22,9 +22,7 @@ def as_urdf(vehicle: Vehicle) -> Vehicle:
     """The same vehicle with every joint and link in proximal frames."""
     data = vehicle.model_dump(mode="json")
     arm, before = data["arm"], IDENTITY
-    for joint, link, place in zip(
-        vehicle.arm.joints, arm["links"], arm["joints"], strict=True
-    ):
+    for joint, link, place in zip(vehicle.arm.joints, arm["links"], arm["joints"], strict=True):
         place.update(origin=mounting(before), a_m=None, alpha_deg=None, d_m=None)
         before = distal_pose(joint)
         move(link, *before)

@@ -24,7 +24,7 @@ PRECISION = 1e-6
 """Relative, of the cost and the step, at which the fit has converged."""
 
 LEASH = 1e-3
-"""Degrees that a constant costs for each of its scales from the file: it holds what nothing does."""
+"""Degrees that a constant costs for each of its scales from the file: holds what is not felt."""
 
 WILD_DEG = 1e3
 """Residual of a simulation that left the numbers; the step that led there is taken back."""

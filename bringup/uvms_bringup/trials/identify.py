@@ -85,7 +85,7 @@ def _worst(found: Fit) -> tuple[Parameter | None, str]:
         if p.may_be_absent and abs(value) < SIGNIFICANCE * error:
             return p, f"{value:.2g} +- {error:.2g} {p.unit} may as well be none"
     together = np.abs(np.triu(found.correlation, 1))
-    i, j = np.unravel_index(np.argmax(together), together.shape)
+    i, j = divmod(int(np.argmax(together)), len(together))
     if together[i, j] > INSEPARABLE:
         k, other = (i, j) if spread[i] > spread[j] else (j, i)
         name = found.parameters[other].name
@@ -116,13 +116,18 @@ def courses_of(folder: str) -> list[Course]:
     return [make_course(trial) for trial in read_trials(folder)]
 
 
-def write_identified(trials: str, vehicle: str, output: str, tell: Tell) -> str:
-    """Identify, write the vehicle file with its comments, and return the report."""
+def identify_file(trials: str, vehicle: str, tell: Tell) -> tuple[Identified, list[Course]]:
+    """Identify the constants of a vehicle file from a folder of trials."""
     data = read_yaml(Path(vehicle), vehicle, VehicleFileError)
     vehicle_from_data(data, vehicle)  # its errors name the file and come before the work
-    found = identify(data, courses_of(trials), tell)
+    courses = courses_of(trials)
+    return identify(data, courses, tell), courses
+
+
+def write(found: Identified, vehicle: str, output: str) -> Path:
+    """The vehicle file with the identified numbers in it, comments and all."""
     text = rewritten(Path(vehicle).read_text(encoding="utf-8"), found.values)
     target = Path(output)
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(text, encoding="utf-8")
-    return f"{report(found)}\nwritten: {target}"
+    return target

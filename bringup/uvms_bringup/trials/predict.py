@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_bringup.errors import TrialError
 from uvms_bringup.trials.convention import (
@@ -28,7 +29,7 @@ class Course(NamedTuple):
 
     trial: Trial
     motion: JointMotion
-    index: Array  # (k,) the samples among the states
+    samples: NDArray[np.int64]  # (k,) indices of the samples among the states
     start: Start
     depth: Array  # (k,) measured, m; for `uvms identify` alone
 
@@ -48,7 +49,7 @@ def make_course(trial: Trial) -> Course:
 
 
 def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
-    """Tables of the vehicle and its tether's load; raises TrialError for another number of joints."""
+    """Tables of the vehicle and its tether's load; raises TrialError unless it has four joints."""
     if vehicle.n_joints != 4:
         raise TrialError(
             f"vehicle {vehicle.name} has {vehicle.n_joints} joints; the trials' arm has 4: base,"
@@ -68,7 +69,7 @@ def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
 def dynamic(course: Course, model: Model, load: Load) -> Prediction:
     """Integrate from the measured initial state, driven by the measured joints."""
     load = trimmed(course, model, load)
-    states = float_freely(model, course.start.state, course.motion, load)[course.index]
+    states = float_freely(model, course.start.state, course.motion, load)[course.samples]
     down = np.array([quat_to_matrix(quaternion)[2] for quaternion in states[:, 3:7]])
     return Prediction(tilt_deg(down), states[:, 2])
 

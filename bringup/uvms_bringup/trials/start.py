@@ -15,7 +15,7 @@ WINDOW_S = 0.5
 
 TRIM_STAYS = 0.3
 TRIM_FADES_S = 5.0
-"""Of the tilt at the start beside the model's rest so much stays; the other part fades in this time.
+"""Of the tilt at the start beside the model's rest so much stays; the others fade in this time.
 
 Cross-validated: docs/validation.md.
 """

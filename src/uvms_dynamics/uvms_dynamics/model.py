@@ -44,7 +44,6 @@ class Model(NamedTuple):
     tool: Array  # (4, 3) tool in the last link's frame: rotation, then position
 
 
-
 def build_model(vehicle: Vehicle) -> Model:
     """Tables of a vehicle for the kernels; all arrays are C-contiguous."""
     arm, environment = vehicle.arm, vehicle.environment

@@ -120,9 +120,7 @@ def _integrate(model, loads, scales, inverse, motion, states):
 def _down(quat):
     """World's down (0, 0, 1) in the body frame."""
     x, y, z, w = quat[0], quat[1], quat[2], quat[3]
-    return np.array(
-        [2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)]
-    )
+    return np.array([2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)])
 
 
 @kernel
