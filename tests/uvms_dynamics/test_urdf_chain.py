@@ -10,12 +10,11 @@ from uvms_dynamics import (
     end_effector,
     end_effector_jacobian,
     inverse_dynamics,
-    kinematics,
     mass_matrix,
-    newton_euler,
     restoring_wrench,
 )
 from uvms_dynamics.errors import VehicleFileError
+from uvms_dynamics.readable import kinematics, newton_euler
 from uvms_dynamics.vehicle import vehicle_from_data
 
 CASES = [random_vehicle(31, 1), random_vehicle(32, 4), random_vehicle(33, 7)]
