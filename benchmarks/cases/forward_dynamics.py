@@ -9,7 +9,8 @@ from motions import COUNT, dry_vehicle, motions
 from paired import paired
 from rigid import ABA, Aba
 
-from uvms_dynamics import build_model, forward_dynamics, load_vehicle, newton_euler
+from uvms_dynamics import build_model, forward_dynamics, load_vehicle
+from uvms_dynamics.readable import newton_euler
 
 KERNEL = "; ours called from compiled code, as the integrator does"
 NUMPY = "the numpy twin, newton_euler.py"

@@ -9,7 +9,8 @@ from motions import COUNT, dry_vehicle, motions
 from paired import paired
 from rigid import pinocchio_model
 
-from uvms_dynamics import build_model, inverse_dynamics, load_vehicle, newton_euler
+from uvms_dynamics import build_model, inverse_dynamics, load_vehicle
+from uvms_dynamics.readable import newton_euler
 
 TWIN = "the numpy twin, newton_euler.py"
 RNEA = "pinocchio.rnea from Python, rigid bodies alone (ours with the water)"

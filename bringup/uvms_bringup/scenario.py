@@ -19,7 +19,7 @@ from uvms_dynamics import (
     load_vehicle,
 )
 from uvms_dynamics.config import Config, validated
-from uvms_dynamics.plant_config import initial_joints
+from uvms_dynamics.plant.config import initial_joints
 from uvms_dynamics.rotations import matrix_to_quat, rpy_to_quat
 from uvms_dynamics.signals import Array, JointGoal, PathGoal
 from uvms_dynamics.vehicle.locate import reference_file

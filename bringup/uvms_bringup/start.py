@@ -3,9 +3,9 @@
 from uvms_bringup.errors import ScenarioError
 from uvms_dynamics import PlantConfig, Vehicle
 from uvms_dynamics.errors import ConfigError
-from uvms_dynamics.plant_config import initial_joints
+from uvms_dynamics.plant.config import initial_joints
+from uvms_dynamics.plant.stability import check_step
 from uvms_dynamics.signals import to_nanoseconds
-from uvms_dynamics.stability import check_step
 from uvms_planner import PlannerConfig
 
 SENSORS = ("imu", "dvl", "pressure", "gps")

@@ -12,11 +12,10 @@ from uvms_dynamics import (
     build_model,
     hull_bias_wrench,
     inverse_dynamics,
-    newton_euler,
     quat_to_matrix,
     thruster_matrix,
 )
-from uvms_dynamics.coriolis import body_inertia
+from uvms_dynamics.readable import body_inertia, newton_euler
 from uvms_dynamics.vehicle import vehicle_from_data
 
 CURRENT = np.array([0.3, -0.2, 0.0])

@@ -6,6 +6,7 @@ import numpy as np
 import pinocchio as pin
 import pytest
 from random_vehicles import REFERENCE, random_motion, random_vehicle
+from urdf_chains import as_urdf, real_vehicle
 
 from uvms_dynamics import build_model, end_effector, inverse_dynamics, topics
 from uvms_dynamics.description import StateFrames, static_message, tree, urdf_text
@@ -21,6 +22,8 @@ VEHICLES = {
     "1 joint": random_vehicle(21, 1, water=False),
     "4 joints": random_vehicle(22, 4, water=False),
     "7 joints": random_vehicle(23, 7, water=False),
+    "4 joints as URDF": as_urdf(random_vehicle(24, 4, water=False)),
+    "real": real_vehicle(),
 }
 STAMP = 12_345_678_901
 

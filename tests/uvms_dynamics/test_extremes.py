@@ -7,7 +7,7 @@ from random_vehicles import REFERENCE, random_vehicle
 
 from uvms_dynamics import PlantConfig
 from uvms_dynamics.integrator import QUATERNION, VELOCITY
-from uvms_dynamics.stability import greatest_step
+from uvms_dynamics.plant.stability import greatest_step
 from uvms_dynamics.vehicle import vehicle_from_data
 
 

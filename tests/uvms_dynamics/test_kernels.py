@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from random_vehicles import random_motion, random_vehicle
 
 import uvms_dynamics as kernels
-from uvms_dynamics import body_forces, build_model, kinematics, newton_euler
+from uvms_dynamics import build_model
 from uvms_dynamics.drag_table import resample
+from uvms_dynamics.readable import body_forces, kinematics, newton_euler
 from uvms_dynamics.rotations import quat_to_matrix
 
 CASES = st.tuples(st.integers(0, 2**32 - 1), st.integers(1, 7))

@@ -10,9 +10,15 @@ from scipy.linalg import eigh
 
 from uvms_dynamics import PlantConfig, build_model, load_vehicle, mass_matrix
 from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY, System, advance, make_scratch
-from uvms_dynamics.operating_points import AXES, operating_points
-from uvms_dynamics.plant_config import initial_state
-from uvms_dynamics.stability import amplification, cause_of, greatest_step, jacobian, stable_steps
+from uvms_dynamics.plant.config import initial_state
+from uvms_dynamics.plant.operating_points import AXES, operating_points
+from uvms_dynamics.plant.stability import (
+    amplification,
+    cause_of,
+    greatest_step,
+    jacobian,
+    stable_steps,
+)
 from uvms_dynamics.thrusters import build_thrusters
 from uvms_dynamics.vehicle import vehicle_from_data
 

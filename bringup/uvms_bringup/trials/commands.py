@@ -50,11 +50,13 @@ def validate(options: argparse.Namespace) -> int:
 def identify(options: argparse.Namespace) -> int:
     """`uvms identify`."""
     from uvms_bringup.trials.cross_validate import cross_validated
-    from uvms_bringup.trials.identify import write_identified
+    from uvms_bringup.trials.identify import identify_file, report, write
 
-    print(write_identified(options.trials, options.vehicle, options.output, _tell))
+    found, courses = identify_file(options.trials, options.vehicle, _tell)
+    print(report(found))
+    print(f"written: {write(found, options.vehicle, options.output)}", flush=True)
     if options.cross_validate:
-        print(cross_validated(options.trials, options.output, _tell))
+        print(cross_validated(found, courses, _tell))
     return 0
 
 

@@ -1,29 +1,25 @@
 """How well the model predicts trials that its constants were not fitted to."""
 
 from collections.abc import Callable, Sequence
-from pathlib import Path
 from typing import Any
 
 from uvms_bringup.trials.fit import Fit, fit, group_of
-from uvms_bringup.trials.identify import Tell, courses_of, identify
+from uvms_bringup.trials.identify import Identified, Tell
 from uvms_bringup.trials.parameters import changed
 from uvms_bringup.trials.predict import Course, drive_model, dynamic
 from uvms_bringup.trials.score import Score, medians, scores
-from uvms_dynamics.errors import VehicleFileError
 from uvms_dynamics.vehicle import vehicle_from_data
-from uvms_dynamics.yaml_text import read_yaml
 
 
-def cross_validated(trials: str, vehicle: str, tell: Tell) -> str:
+def cross_validated(found: Identified, courses: Sequence[Course], tell: Tell) -> str:
     """Medians over the trials, each predicted by a fit without it and without its motion."""
-    data = read_yaml(Path(vehicle), vehicle, VehicleFileError)
-    courses = courses_of(trials)
-    full = identify(data, courses, tell).fit
     lines = []
     for what, key in (("trial", lambda name: name), ("motion", group_of)):
-        roll, pitch = medians(left_out(data, courses, full, key, tell))
-        lines.append(f"fitted without the {what} that is scored, median of {len(courses)}:"
-                     f" roll {roll.rmse:.3f} deg, pitch {pitch.rmse:.3f} deg")  # fmt: skip
+        roll, pitch = medians(left_out(found.data, courses, found.fit, key, tell))
+        lines.append(
+            f"fitted without the {what} that is scored, median of {len(courses)}:"
+            f" roll {roll.rmse:.3f} deg, pitch {pitch.rmse:.3f} deg"
+        )
     return "\n".join(lines)
 
 

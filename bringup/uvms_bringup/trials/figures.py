@@ -2,9 +2,11 @@
 
 import math
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 
 from uvms_bringup.report import style
 from uvms_bringup.trials.score import AXES
@@ -14,7 +16,7 @@ COLUMNS = 4
 LEAST_DEG = 3.0
 """Height of an axis at least, so that noise does not look like motion."""
 
-_LOOKS = {
+_LOOKS: dict[str, dict[str, Any]] = {
     "dynamic model": {"color": style.COLORS[0], "linewidth": 1.3, "zorder": 3},
     "quasi-static": {"color": style.COLORS[4], "linewidth": 0.9, "zorder": 2},
 }
@@ -49,7 +51,9 @@ def _trial(panel: Axes, each: Outcome, axis: int) -> None:
     panel.plot(trial.t, measured, color="black", linewidth=0.9, label="measured")
     for model, look in _LOOKS.items():
         panel.plot(trial.t, each.said[model].tilt[:, axis], label=model, **look)
-    shown = np.concatenate([trial.tilt[trial.accepted, axis], each.said["dynamic model"].tilt[:, axis]])
+    shown = np.concatenate(
+        [trial.tilt[trial.accepted, axis], each.said["dynamic model"].tilt[:, axis]]
+    )
     style.room(panel, shown, LEAST_DEG)
     panel.set_title(trial.name, fontsize=8)
     panel.margins(x=0.0)
@@ -73,6 +77,6 @@ def _errors(found: list[Outcome], folder: Path) -> Path:
     return _save(figure, folder / "trials_rmse.png")
 
 
-def _save(figure, path: Path) -> Path:
+def _save(figure: Figure, path: Path) -> Path:
     figure.savefig(path)
     return path

@@ -23,6 +23,12 @@ STEP = 0.02
 PRECISION = 1e-6
 """Relative, of the cost and the step, at which the fit has converged."""
 
+LEASH = 1e-3
+"""Degrees that a constant costs for each of its scales from the file: holds what is not felt."""
+
+WILD_DEG = 1e3
+"""Residual of a simulation that left the numbers; the step that led there is taken back."""
+
 FEWEST_GROUPS = 3
 """Groups of trials below which their scatter says nothing."""
 
@@ -36,19 +42,9 @@ class Fit:
 
     parameters: tuple[Parameter, ...]
     values: Array  # (p,)
-    covariance: Array  # (p, p) jackknife over groups of trials
+    errors: Array  # (p,) standard errors, jackknife over groups of trials
+    correlation: Array  # (p, p) of the errors, from the slopes of the residuals
     rms_deg: float  # of roll and pitch, trials weighted alike
-
-    @property
-    def errors(self) -> Array:
-        """Standard errors (p,)."""
-        return np.sqrt(np.diag(self.covariance))
-
-    @property
-    def correlation(self) -> Array:
-        """Correlations (p, p) of the errors."""
-        scale = np.maximum(self.errors, 1e-300)
-        return np.asarray(self.covariance / np.outer(scale, scale))
 
 
 def group_of(name: str) -> str:
@@ -61,6 +57,7 @@ def fit(
     courses: Sequence[Course],
     parameters: Sequence[Parameter],
     tell: Callable[[str], None] = lambda line: None,
+    precision: float = PRECISION,
 ) -> Fit:
     """Fit the parameters of the vehicle data to the courses, from the values in the data."""
     parameters = tuple(parameters)
@@ -69,7 +66,8 @@ def fit(
     low = np.array([p.low for p in parameters]) / scale
 
     def residuals(x: Array) -> Array:
-        return np.concatenate(_residuals(data, courses, parameters, x * scale))
+        parts = _residuals(data, courses, parameters, x * scale)
+        return np.concatenate([*parts, LEASH * (x - start)])
 
     def slopes(x: Array) -> Array:
         tell(f"  rms {_rms(data, courses, parameters, x * scale):.4f} deg")
@@ -81,15 +79,17 @@ def fit(
         np.maximum(start, low + 1e-3),
         jac=slopes,
         bounds=(low, np.inf),
-        ftol=PRECISION,
-        xtol=PRECISION,
+        ftol=precision,
+        xtol=precision,
         gtol=1e-12,
         max_nfev=40,
     )
     rows = [len(r) for r in _residuals(data, courses, parameters, found.x * scale)]
-    covariance = _jackknife(slopes(found.x), residuals(found.x), rows, courses)
+    felt = sum(rows)
+    jacobian, residual = slopes(found.x)[:felt], residuals(found.x)[:felt]
+    errors = scale * _jackknife(jacobian, residual, rows, courses)
     rms = _rms(data, courses, parameters, found.x * scale)
-    return Fit(parameters, found.x * scale, covariance * np.outer(scale, scale), rms)
+    return Fit(parameters, found.x * scale, errors, _correlation(jacobian), rms)
 
 
 def _residuals(
@@ -103,7 +103,8 @@ def _residuals(
         trial, said = course.trial, dynamic(course, model, load)
         depth = DEPTH_WEIGHT_DEG_M * (said.depth - course.depth)
         error = np.column_stack([said.tilt - trial.tilt, depth])[trial.accepted]
-        out.append((error / np.sqrt(len(error))).ravel())
+        error = np.nan_to_num(error, nan=WILD_DEG, posinf=WILD_DEG, neginf=-WILD_DEG)
+        out.append((np.clip(error, -WILD_DEG, WILD_DEG) / np.sqrt(len(error))).ravel())
     return out
 
 
@@ -116,7 +117,7 @@ def _rms(data: Any, courses: Sequence[Course], parameters: Sequence[Parameter], 
 def _jackknife(
     jacobian: Array, residual: Array, rows: list[int], courses: Sequence[Course]
 ) -> Array:
-    """Covariance (p, p) of the estimate, by leaving out one group of trials at a time.
+    """Standard errors (p,) of the estimate, by leaving out one group of trials at a time.
 
     One Gauss-Newton step from the full solution for each group, H and J without it:
     (H - H_g)^-1 J_g^T r_g. Whole groups go, because the errors within a trial, and of one motion
@@ -132,7 +133,16 @@ def _jackknife(
         moves.append(step)
         unseen = np.maximum(unseen, blind)
     spread = np.array(moves) - np.mean(moves, axis=0)
-    return np.asarray((len(groups) - 1) / len(groups) * spread.T @ spread + unseen)
+    variance = (len(groups) - 1) / len(groups) * np.sum(spread**2, axis=0)
+    return np.asarray(np.sqrt(variance + np.diag(unseen)))
+
+
+def _correlation(jacobian: Array) -> Array:
+    """Correlations (p, p) of errors from white noise; what is not felt goes with nothing."""
+    size = jacobian.shape[1]
+    inverse = np.stack([_solve(jacobian.T @ jacobian, unit)[0] for unit in np.eye(size)])
+    scale = np.sqrt(np.maximum(np.diag(inverse), 1e-300))
+    return np.asarray(inverse / np.outer(scale, scale))
 
 
 def _groups(names: list[str]) -> list[str]:

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from uvms_bringup.trials.fit import Fit, fit
-from uvms_bringup.trials.parameters import Parameter, present, value_at
+from uvms_bringup.errors import TrialError
+from uvms_bringup.trials.fit import PRECISION, Fit, fit
+from uvms_bringup.trials.parameters import CANDIDATES, Parameter, present, value_at
 from uvms_bringup.trials.predict import Course, make_course
 from uvms_bringup.trials.read import read_trials
 from uvms_bringup.trials.rewrite import rewritten
@@ -18,6 +19,9 @@ from uvms_dynamics.yaml_text import read_yaml
 
 SIGNIFICANCE = 2.0
 """Standard errors by which a thing that may be absent must differ from nothing."""
+
+ROUGH = 1e-3
+"""Precision of a fit that is to show only what is not determined."""
 
 INSEPARABLE = 0.92
 """Correlation of two errors above which the trials show one combination and not both."""
@@ -34,24 +38,39 @@ class Identified:
     refused: dict[str, str] = field(default_factory=dict)
 
     @property
-    def values(self) -> dict[str, float]:
-        """The identified numbers, by path in the file."""
-        pairs = zip(self.fit.parameters, self.fit.values, strict=True)
-        return {parameter.path: float(value) for parameter, value in pairs}
+    def values(self) -> dict[str, tuple[float, float]]:
+        """The identified numbers and their standard errors, by path in the file."""
+        rows = zip(self.fit.parameters, self.fit.values, self.fit.errors, strict=True)
+        return {parameter.path: (float(value), float(error)) for parameter, value, error in rows}
 
 
-def identify(data: Any, courses: Sequence[Course], tell: Tell = lambda line: None) -> Identified:
-    """Fit all candidates; while one is not determined, give up the worst and fit the others."""
-    parameters, refused = present(data)
-    while True:
+def identify(
+    data: Any,
+    courses: Sequence[Course],
+    tell: Tell = lambda line: None,
+    candidates: Sequence[Parameter] | None = None,
+) -> Identified:
+    """Fit all candidates; while one is not determined, give up the worst and fit the others.
+
+    Raises:
+        TrialError: there are fewer than three trials, or they determine nothing at all.
+    """
+    parameters, refused = present(data, candidates or CANDIDATES)
+    precision = ROUGH
+    while parameters:
         tell(f"fitting {len(parameters)} constants to {len(courses)} trials")
-        found = fit(data, courses, parameters, tell)
+        found = fit(data, courses, parameters, tell, precision)
         worst, reason = _worst(found)
-        if worst is None:
+        if worst is not None:
+            tell(f"giving up {worst.name}: {reason}")
+            refused[worst.name] = reason
+            parameters = [p for p in parameters if p is not worst]
+        elif precision == ROUGH:
+            precision = PRECISION
+        else:
             return Identified(data, found, refused)
-        tell(f"giving up {worst.name}: {reason}")
-        refused[worst.name] = reason
-        parameters = [p for p in parameters if p is not worst]
+    reasons = "\n".join(f"  {name}: {reason}" for name, reason in refused.items())
+    raise TrialError(f"these trials determine none of the constants:\n{reasons}")
 
 
 def _worst(found: Fit) -> tuple[Parameter | None, str]:
@@ -66,7 +85,7 @@ def _worst(found: Fit) -> tuple[Parameter | None, str]:
         if p.may_be_absent and abs(value) < SIGNIFICANCE * error:
             return p, f"{value:.2g} +- {error:.2g} {p.unit} may as well be none"
     together = np.abs(np.triu(found.correlation, 1))
-    i, j = np.unravel_index(np.argmax(together), together.shape)
+    i, j = divmod(int(np.argmax(together)), len(together))
     if together[i, j] > INSEPARABLE:
         k, other = (i, j) if spread[i] > spread[j] else (j, i)
         name = found.parameters[other].name
@@ -97,13 +116,18 @@ def courses_of(folder: str) -> list[Course]:
     return [make_course(trial) for trial in read_trials(folder)]
 
 
-def write_identified(trials: str, vehicle: str, output: str, tell: Tell) -> str:
-    """Identify, write the vehicle file with its comments, and return the report."""
+def identify_file(trials: str, vehicle: str, tell: Tell) -> tuple[Identified, list[Course]]:
+    """Identify the constants of a vehicle file from a folder of trials."""
     data = read_yaml(Path(vehicle), vehicle, VehicleFileError)
     vehicle_from_data(data, vehicle)  # its errors name the file and come before the work
-    found = identify(data, courses_of(trials), tell)
+    courses = courses_of(trials)
+    return identify(data, courses, tell), courses
+
+
+def write(found: Identified, vehicle: str, output: str) -> Path:
+    """The vehicle file with the identified numbers in it, comments and all."""
     text = rewritten(Path(vehicle).read_text(encoding="utf-8"), found.values)
     target = Path(output)
     target.parent.mkdir(parents=True, exist_ok=True)
     target.write_text(text, encoding="utf-8")
-    return f"{report(found)}\nwritten: {target}"
+    return target

@@ -1,7 +1,8 @@
 """A smooth motion of the arm through its measured angles."""
 
 import numpy as np
-from scipy.interpolate import make_lsq_spline
+from numpy.typing import NDArray
+from scipy.interpolate import BSpline, make_lsq_spline
 
 from uvms_bringup.trials.convention import joint_angles
 from uvms_bringup.trials.read import Trial
@@ -17,7 +18,7 @@ LONGEST_STEP_S = 0.05
 _CUBIC = 3
 
 
-def joint_motion(trial: Trial) -> tuple[JointMotion, Array]:
+def joint_motion(trial: Trial) -> tuple[JointMotion, NDArray[np.int64]]:
     """The motion for `float_freely`, and the index (k,) of each sample among its states.
 
     A least-squares cubic spline of the measured angles: accelerations are continuous and are those
@@ -32,7 +33,7 @@ def joint_motion(trial: Trial) -> tuple[JointMotion, Array]:
     return JointMotion(np.diff(edges), *rows), index
 
 
-def _spline(t, angles):
+def _spline(t: Array, angles: Array) -> BSpline:
     inner = t[SAMPLES_PER_KNOT:-SAMPLES_PER_KNOT:SAMPLES_PER_KNOT]
     ends = [t[0]] * (_CUBIC + 1), [t[-1]] * (_CUBIC + 1)
     return make_lsq_spline(t, angles, np.concatenate([ends[0], inner, ends[1]]), _CUBIC)

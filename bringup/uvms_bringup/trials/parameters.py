@@ -1,6 +1,6 @@
 """The constants of a vehicle file that trials of a floating vehicle may show."""
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -39,11 +39,13 @@ CANDIDATES = (
 """What a slow, free-floating vehicle could show at all; the data decides how much of it."""
 
 
-def present(data: Any) -> tuple[list[Parameter], dict[str, str]]:
+def present(
+    data: Any, candidates: Sequence[Parameter] = CANDIDATES
+) -> tuple[list[Parameter], dict[str, str]]:
     """Candidates that the file states as a number, and why each of the others cannot be fitted."""
     found: list[Parameter] = []
     skipped: dict[str, str] = {}
-    for parameter in CANDIDATES:
+    for parameter in candidates:
         value, reason = _look(data, parameter.path)
         if reason:
             skipped[parameter.name] = reason

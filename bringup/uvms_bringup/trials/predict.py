@@ -3,6 +3,7 @@
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_bringup.errors import TrialError
 from uvms_bringup.trials.convention import (
@@ -13,7 +14,7 @@ from uvms_bringup.trials.convention import (
 )
 from uvms_bringup.trials.motion import joint_motion
 from uvms_bringup.trials.read import Trial
-from uvms_bringup.trials.start import TRIM_GAIN, Start, measured_start
+from uvms_bringup.trials.start import TRIM_FADES_S, TRIM_STAYS, Start, measured_start
 from uvms_dynamics import Model, Vehicle, build_model, restoring_wrench
 from uvms_dynamics.prescribed import JointMotion, Load, float_freely
 from uvms_dynamics.rotations import quat_to_matrix
@@ -28,7 +29,7 @@ class Course(NamedTuple):
 
     trial: Trial
     motion: JointMotion
-    index: Array  # (k,) the samples among the states
+    samples: NDArray[np.int64]  # (k,) indices of the samples among the states
     start: Start
     depth: Array  # (k,) measured, m; for `uvms identify` alone
 
@@ -48,7 +49,7 @@ def make_course(trial: Trial) -> Course:
 
 
 def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
-    """Tables of the vehicle and its tether's load; raises TrialError for another number of joints."""
+    """Tables of the vehicle and its tether's load; raises TrialError unless it has four joints."""
     if vehicle.n_joints != 4:
         raise TrialError(
             f"vehicle {vehicle.name} has {vehicle.n_joints} joints; the trials' arm has 4: base,"
@@ -65,26 +66,30 @@ def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
     return build_model(vehicle), load
 
 
-def dynamic(course: Course, model: Model, load: Load, gain: float = TRIM_GAIN) -> Prediction:
+def dynamic(course: Course, model: Model, load: Load) -> Prediction:
     """Integrate from the measured initial state, driven by the measured joints."""
-    load = load._replace(moment=load.moment + trim(course, model, load, gain))
-    states = float_freely(model, course.start.state, course.motion, load)[course.index]
+    load = trimmed(course, model, load)
+    states = float_freely(model, course.start.state, course.motion, load)[course.samples]
     down = np.array([quat_to_matrix(quaternion)[2] for quaternion in states[:, 3:7]])
     return Prediction(tilt_deg(down), states[:, 2])
 
 
-def trim(course: Course, model: Model, load: Load, gain: float) -> Array:
-    """First moment (3,) that turns the model's rest towards the tilt measured at the start.
+def trimmed(course: Course, model: Model, load: Load) -> Load:
+    """The load with the first moment that holds the vehicle at the tilt measured at the start.
 
     Nobody knows the ballast, trapped air and pull of the tether of the day, nor how the markers
-    sat. What the vehicle's first reading has beside the model's rest is partly that, which stays,
-    and partly wobble and noise, which do not: `gain` of it is taken to stay.
+    sat. A vehicle that starts at rest beside the model's rest shows that sum: a part of it stays
+    for the trial, the other wanders off and is forgotten (the best guess of a constant plus a
+    first-order Gauss-Markov process of which one value is known).
     """
     first = first_moment(model, course.motion.q[0]) + _loaded(load, course.start.state[2])
-    rest = tilt_deg(_direction(first))
-    wanted = down_direction(rest + gain * (course.start.tilt - rest))
+    wanted = down_direction(course.start.tilt)
     added = first[2] * wanted / wanted[2] - first
-    return np.array([added[0], added[1], 0.0])
+    return load._replace(
+        moment=load.moment + TRIM_STAYS * added,
+        moment_fading=(1.0 - TRIM_STAYS) * added,
+        fading_time=TRIM_FADES_S,
+    )
 
 
 def quasi_static(course: Course, model: Model, load: Load, depth: Array) -> Prediction:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_bringup.errors import TrialError
 from uvms_dynamics.signals import Array
@@ -29,7 +30,7 @@ class Trial:
     attitude: Array  # (k, 3) roll, pitch (nose down), yaw, degrees
     gyro: Array  # (k, 3) rad/s
     alpha: Array  # (k, 4) measured axes e, d, c, b of the arm, rad: base to wrist
-    accepted: Array  # (k,) bool: whether the motion capture may be scored
+    accepted: NDArray[np.bool_]  # (k,) whether the motion capture may be scored
 
     @property
     def tilt(self) -> Array:

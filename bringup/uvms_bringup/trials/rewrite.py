@@ -1,30 +1,33 @@
 """Put numbers into the text of a YAML file and leave every other letter as it is."""
 
+import math
 from collections.abc import Mapping
 
 import numpy as np
 import yaml
 
-DIGITS = 5
-"""Significant digits written: an identified number has two or three that mean anything."""
+FINENESS = 30.0
+"""Steps of the last digit in a standard error, at least: rounding must not show."""
 
 
-def rewritten(text: str, values: Mapping[str, float]) -> str:
-    """The text with the number at each dotted path replaced; comments and layout stay."""
+def rewritten(text: str, values: Mapping[str, tuple[float, float]]) -> str:
+    """The text with the number at each dotted path replaced; comments and layout stay.
+
+    values: the number and its standard error, which says how many digits are written.
+    """
     root = yaml.compose(text, Loader=yaml.SafeLoader)
     spans = []
-    for path, value in values.items():
+    for path, (value, error) in values.items():
         node = _node(root, path)
-        spans.append((node.start_mark.index, node.end_mark.index, _number(value)))
+        spans.append((node.start_mark.index, node.end_mark.index, _number(value, error)))
     for begin, end, number in sorted(spans, reverse=True):
         text = text[:begin] + number + text[end:]
     return text
 
 
-def _number(value: float) -> str:
-    return np.format_float_positional(
-        value + 0.0, precision=DIGITS, unique=False, fractional=False, trim="0"
-    )
+def _number(value: float, error: float) -> str:
+    decimals = max(1, math.ceil(math.log10(FINENESS / error)))
+    return np.format_float_positional(round(value, decimals) + 0.0, trim="0")
 
 
 def _node(node: yaml.Node | None, path: str) -> yaml.ScalarNode:

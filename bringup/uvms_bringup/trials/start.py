@@ -13,10 +13,11 @@ from uvms_dynamics.signals import Array
 WINDOW_S = 0.5
 """The initial state is the mean over so long a time; nothing later is ever looked at."""
 
-TRIM_GAIN = 0.5
-"""Part of the tilt at the start beside the model's rest that is taken to stay.
+TRIM_STAYS = 0.3
+TRIM_FADES_S = 5.0
+"""Of the tilt at the start beside the model's rest so much stays; the others fade in this time.
 
-The rest is wobble and error of the one reading. Cross-validated: docs/validation.md.
+Cross-validated: docs/validation.md.
 """
 
 

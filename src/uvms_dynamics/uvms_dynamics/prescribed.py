@@ -31,24 +31,33 @@ class JointMotion(NamedTuple):
 
 
 class Load(NamedTuple):
-    """A weight (N, down) and its first moment (3,) about the body origin, linear in the depth."""
+    """A weight (N, down) and its first moment (3,) about the body origin.
+
+    Linear in the depth, and a part of the moment fades away: moment_fading exp(-t / fading_time).
+    """
 
     weight: float = 0.0
     moment: Array = np.zeros(3)  # N m: position times weight, body frame
     weight_per_m: float = 0.0
     moment_per_m: Array = np.zeros(3)
     reference_depth: float = 0.0  # m, where the part per metre is nothing
+    moment_fading: Array = np.zeros(3)
+    fading_time: float = 1.0  # s
 
 
 def float_freely(model: Model, start: Array, motion: JointMotion, load: Load) -> Array:
     """States (m+1, 13) from the state `start` (13,), by classical Runge-Kutta steps."""
-    table = np.zeros(10)
-    table[0], table[1:4] = load.weight, load.moment
-    table[4], table[5:8], table[8] = load.weight_per_m, load.moment_per_m, load.reference_depth
+    parts = (
+        [load.weight, *load.moment],
+        [load.weight_per_m, *load.moment_per_m],
+        [0.0, *load.moment_fading],
+    )
+    table = np.array(parts)
+    scales = np.array([load.reference_depth, load.fading_time])
     inverse = np.linalg.inv(base_inertia(model, motion.q))
     out = np.empty((len(motion.steps) + 1, STATE))
     out[0] = start
-    _integrate(model, table, inverse, motion, out)
+    _integrate(model, table, scales, inverse, motion, out)
     return out
 
 
@@ -63,15 +72,13 @@ def base_inertia(model, q):
 
 @kernel
 def base_acceleration(model, load, inverse, x, q, q_dot, q_ddot):
-    """nu_dot (6,) of the base at the state x (13,); load (10,) as `float_freely` packs it."""
+    """nu_dot (6,) of the base at the state x (13,); load (4,) is weight and first moment."""
     quat = x[3:7]
     needed = inverse_dynamics(model, quat, x[7:], np.zeros(6), q, q_dot, q_ddot)
     down = _down(quat)
-    below = x[2] - load[8]
-    weight = load[0] + load[4] * below
-    moment = load[1:4] + load[5:8] * below
+    moment = load[1:]
     tau = -needed[:6]
-    tau[:3] += weight * down
+    tau[:3] += load[0] * down
     tau[3] += moment[1] * down[2] - moment[2] * down[1]
     tau[4] += moment[2] * down[0] - moment[0] * down[2]
     tau[5] += moment[0] * down[1] - moment[1] * down[0]
@@ -83,8 +90,9 @@ def base_acceleration(model, load, inverse, x, q, q_dot, q_ddot):
 
 
 @kernel
-def _integrate(model, load, inverse, motion, states):
+def _integrate(model, loads, scales, inverse, motion, states):
     steps, q, q_dot, q_ddot = motion
+    t = 0.0
     slope = np.empty((4, 13))
     trial = np.empty(13)
     for s in range(steps.shape[0]):
@@ -96,11 +104,15 @@ def _integrate(model, load, inverse, motion, states):
                 trial += (h if k == 3 else 0.5 * h) * slope[k - 1]
             trial[3:7] /= np.sqrt(np.sum(trial[3:7] ** 2))
             _pose_rate(trial, slope[k])
+            at = t + 0.5 * h * ((k + 1) // 2)
+            below, faded = trial[2] - scales[0], np.exp(-at / scales[1])
+            load = loads[0] + loads[1] * below + loads[2] * faded
             slope[k, 7:] = base_acceleration(
                 model, load, inverse[row], trial, q[row], q_dot[row], q_ddot[row]
             )
         total = slope[0] + 2.0 * (slope[1] + slope[2]) + slope[3]
         states[s + 1] = states[s] + h / 6.0 * total
+        t += h
         states[s + 1, 3:7] /= np.sqrt(np.sum(states[s + 1, 3:7] ** 2))
 
 

@@ -35,7 +35,7 @@ def placement_pose(joint: Joint) -> Pose:
 
 
 def distal_pose(joint: Joint) -> Pose:
-    """The link's frame in the joint's own, which turns with the link: DH's Tz(d) Tx(a) Rx(alpha)."""
+    """The link's frame in the joint's own, which turns with it: DH's Tz(d) Tx(a) Rx(alpha)."""
     if joint.a_m is None or joint.alpha_deg is None or joint.d_m is None:
         return IDENTITY
     c, s = math.cos(math.radians(joint.alpha_deg)), math.sin(math.radians(joint.alpha_deg))

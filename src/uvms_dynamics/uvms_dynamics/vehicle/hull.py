@@ -14,7 +14,6 @@ from uvms_dynamics.vehicle.parts import (
     word,
 )
 
-
 SPHEROID: Any = "spheroid"  # the words, of any field's type
 NEUTRAL: Any = "neutral"
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from uvms_dynamics.errors import PlantDiverged
-from uvms_dynamics.operating_points import AXES
+from uvms_dynamics.plant.operating_points import AXES
 from uvms_dynamics.signals import Array, to_seconds
 from uvms_dynamics.vehicle import Vehicle
 

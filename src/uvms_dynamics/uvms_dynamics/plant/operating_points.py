@@ -8,9 +8,9 @@ import numpy as np
 from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.kernels import inverse_dynamics
 from uvms_dynamics.model import Model
-from uvms_dynamics.plant_config import PlantConfig, initial_state
+from uvms_dynamics.plant.config import PlantConfig, initial_state
+from uvms_dynamics.plant.stiffest_poses import joint_limits, stiffest_poses, stop_depths
 from uvms_dynamics.signals import Array
-from uvms_dynamics.stiffest_poses import joint_limits, stiffest_poses, stop_depths
 from uvms_dynamics.thrusters import thruster_matrix
 from uvms_dynamics.vehicle import Vehicle
 

@@ -7,8 +7,8 @@ do the same in one moving frame with one inertia per body; the tests hold both a
 
 import numpy as np
 
-from uvms_dynamics import body_forces
-from uvms_dynamics.body_forces import Motion
+from uvms_dynamics.readable import body_forces
+from uvms_dynamics.readable.body_forces import Motion
 from uvms_dynamics.rotations import quat_to_matrix
 from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Joint, Link, Vehicle

@@ -15,10 +15,10 @@ from uvms_dynamics.errors import ConfigError
 from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY, System, advance, make_scratch
 from uvms_dynamics.kernels import joint_passive_torque, mass_matrix
 from uvms_dynamics.model import build_model
-from uvms_dynamics.operating_points import AXES, Point, operating_points
-from uvms_dynamics.plant_config import PlantConfig
+from uvms_dynamics.plant.config import PlantConfig
+from uvms_dynamics.plant.operating_points import AXES, Point, operating_points
+from uvms_dynamics.plant.stiffest_poses import stop_depths
 from uvms_dynamics.signals import Array
-from uvms_dynamics.stiffest_poses import stop_depths
 from uvms_dynamics.thrusters import build_thrusters
 from uvms_dynamics.vehicle import Vehicle
 

@@ -2,7 +2,6 @@
 
 import numpy as np
 
-from uvms_dynamics.divergence import check_finite
 from uvms_dynamics.errors import SignalError
 from uvms_dynamics.integrator import (
     JOINTS,
@@ -12,8 +11,10 @@ from uvms_dynamics.integrator import (
 )
 from uvms_dynamics.kernels.layout import EFFORT
 from uvms_dynamics.model import build_model
-from uvms_dynamics.plant_config import PlantConfig, initial_state, steps_in
-from uvms_dynamics.plant_truth import PlantTruth, true_disturbance, true_joints, true_odometry
+from uvms_dynamics.plant.config import PlantConfig, initial_state, steps_in
+from uvms_dynamics.plant.divergence import check_finite
+from uvms_dynamics.plant.stability import check_step
+from uvms_dynamics.plant.truth import PlantTruth, true_disturbance, true_joints, true_odometry
 from uvms_dynamics.sensors import SensorFrame, SensorSuite
 from uvms_dynamics.sensors.mounting import Trajectory
 from uvms_dynamics.signals import (
@@ -23,11 +24,8 @@ from uvms_dynamics.signals import (
     to_nanoseconds,
     to_seconds,
 )
-from uvms_dynamics.stability import check_step
 from uvms_dynamics.thrusters import build_thrusters
 from uvms_dynamics.vehicle import Vehicle
-
-__all__ = ["Plant", "PlantConfig", "PlantTruth", "SensorFrame"]
 
 
 class Plant:
