@@ -62,7 +62,7 @@ def test_the_repository_carries_what_the_trials_give(data):
 
 @pytest.fixture(scope="module")
 def made(data):
-    """Eight trials of a vehicle whose constants are not the file's."""
+    """Six trials of a vehicle whose constants are not the file's."""
     truth = changed(
         data,
         {
@@ -77,7 +77,7 @@ def made(data):
         },
     )
     vehicle = vehicle_from_data(truth)
-    return truth, [made_trial(vehicle, seed, noise_deg=0.1) for seed in range(8)]
+    return truth, [made_trial(vehicle, seed, noise_deg=0.1) for seed in range(6)]
 
 
 def test_known_constants_are_found_again(data, made):
