@@ -77,7 +77,7 @@ def made(data):
         },
     )
     vehicle = vehicle_from_data(truth)
-    return truth, [made_trial(vehicle, seed, noise_deg=0.1) for seed in range(8)]
+    return truth, [made_trial(vehicle, seed, noise_deg=0.05) for seed in range(8)]
 
 
 def test_known_constants_are_found_again(data, made):
@@ -86,14 +86,14 @@ def test_known_constants_are_found_again(data, made):
     for parameter, value, error in zip(
         found.fit.parameters, found.fit.values, found.fit.errors, strict=True
     ):
-        assert abs(value - value_at(truth, parameter.path)) < max(4.0 * error, 0.02 * abs(value))
+        close = max(4.0 * error, 0.15 * parameter.worst_error)
+        assert abs(value - value_at(truth, parameter.path)) < close
         assert 0.0 < error <= parameter.worst_error
     fitted = {parameter.path for parameter in found.fit.parameters}
     assert fitted >= {*STATIC, "hull.added_mass.3", "hull.added_mass.4", "arm.base.rpy_deg.2"}
-    assert "quadratic roll damping" in found.refused
-    told = report(found)
-    assert "not fitted: quadratic roll damping: " in told
-    assert found.fit.rms_deg < 0.25
+    assert "quadratic pitch damping" in found.refused
+    assert "not fitted: quadratic pitch damping: " in report(found)
+    assert found.fit.rms_deg < 0.1
 
 
 def test_an_arm_at_rest_shows_little(data):
