@@ -77,3 +77,13 @@ def test_the_observer_keeps_the_vehicle_level_while_the_arm_swings():
     without, _ = watched("arm_swing", "control.observer=false")
     assert with_observer.largest_deg(0) < 4.0
     assert without.largest_deg(0) > 3.0 * with_observer.largest_deg(0)
+
+
+def test_a_real_vehicle_runs_as_the_reference_does():
+    """The BlueROV2 has no authority in pitch and trims by the bow with its arm stowed."""
+    watch, _ = watched("hover", "vehicle=bluerov2_alpha5", "duration_s=10")
+    assert watch.stamps[-1] == 10.0
+    assert watch.largest_deg(0) < 2.0
+    assert watch.largest_deg(1) < 6.0
+    drift = np.array(watch.tools) - watch.tools[0]
+    assert np.linalg.norm(drift, axis=1).max() < 0.1
