@@ -87,3 +87,12 @@ def test_a_wrong_shape_is_named(which, name):
     given[which] = given[which][:, :-1]
     with pytest.raises(ConfigError, match=rf"{name}: has shape .*, needs \(4, "):
         advance_batch(system, *given, STEP, STEPS)
+
+
+def test_a_current_of_two_numbers_and_steps_backwards_are_refused():
+    system = system_of(3)
+    given = random_starts(system, 3, 4)
+    with pytest.raises(ConfigError, match=r"current: has shape \(2,\), needs \(3,\)"):
+        advance_batch(system._replace(current=np.zeros(2)), *given, STEP, STEPS)
+    with pytest.raises(ConfigError, match="steps: -1 is negative"):
+        advance_batch(system, *given, STEP, -1)

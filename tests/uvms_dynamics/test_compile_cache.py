@@ -1,8 +1,11 @@
 """Compiled kernels are kept apart by the sources that they were made from."""
 
+import ast
+import importlib.util
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -49,3 +52,32 @@ def test_kernels_go_to_the_folder_of_their_sources():
 
 def test_the_users_own_folder_is_respected(tmp_path):
     assert cache_folder(NUMBA_CACHE_DIR=str(tmp_path)) == str(tmp_path)
+
+
+def constants_from_elsewhere(path):
+    """(module, name) of each constant that a file imports from a package with kernels."""
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        module = getattr(node, "module", None) or ""
+        if isinstance(node, ast.ImportFrom) and module.split(".")[0] in compile_cache.PACKAGES:
+            yield from ((module, each.name) for each in node.names if each.name.isupper())
+
+
+def test_constants_that_kernels_take_from_other_files_count_too():
+    """numba compiles them in as they are; a file counts that speaks of numba, as its text can."""
+    kernels = [
+        path
+        for folder in compile_cache._folders()
+        for path in folder.rglob("*.py")
+        if any(mark in path.read_text("utf-8") for mark in ("@njit", "@kernel", "@inner"))
+    ]
+    found = {constant for path in kernels for constant in constants_from_elsewhere(path)}
+    assert len(found) > 20
+    unheeded = [
+        (module, name)
+        for module, name in found
+        if not any(
+            mark in Path(importlib.util.find_spec(module).origin).read_bytes()
+            for mark in compile_cache._MARKS
+        )
+    ]
+    assert unheeded == []

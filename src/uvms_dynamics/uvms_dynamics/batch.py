@@ -1,5 +1,7 @@
 """Many independent simulations of one vehicle at once, eight to a vector of the processor."""
 
+import operator
+
 import numpy as np
 
 from uvms_dynamics.errors import ConfigError
@@ -20,22 +22,29 @@ def advance_batch(
     x (b, nx) are their states, laid out as `uvms_dynamics.integrator` says, thrust_command (b, m)
     N and effort (b, n) N m their constant commands. Each comes out as `advance` would leave it, but
     for rounding. Vehicle and current are common to all. One thread; 1024 simulations take less
-    than half the time that they take one by one. Raises ConfigError for shapes that do not fit.
+    than half the time that they take one by one. Raises ConfigError for shapes that do not fit and
+    for a number of steps that is none.
     """
-    n, m = int(system.model[HULL, JOINTS]), len(system.thrusters)
-    wanted = {
-        "x": (len(x), state_size(system)),
-        "thrust_command": (len(x), m),
-        "effort": (len(x), n),
-    }
-    arrays = {"x": x, "thrust_command": thrust_command, "effort": effort}
-    for name, shape in wanted.items():
-        if arrays[name].shape != shape:
-            raise ConfigError(f"{name}: has shape {arrays[name].shape}, needs {shape}")
+    if operator.index(steps) < 0:
+        raise ConfigError(f"steps: {steps} is negative; must be a whole number >= 0")
     out = np.array(x, dtype=float, order="C")
     thrust, torque = (np.ascontiguousarray(a, dtype=float) for a in (thrust_command, effort))
-    _advance_groups(*system, out, thrust, torque, float(step), int(steps))
+    _check_shapes(system, out, thrust, torque)
+    _advance_groups(*system, out, thrust, torque, float(step), steps)
     return out
+
+
+def _check_shapes(system: System, x: Array, thrust_command: Array, effort: Array) -> None:
+    """The kernels read without bounds, so all must fit."""
+    n, m = int(system.model[HULL, JOINTS]), len(system.thrusters)
+    for name, array, shape in (
+        ("x", x, (len(x), state_size(system))),
+        ("thrust_command", thrust_command, (len(x), m)),
+        ("effort", effort, (len(x), n)),
+        ("current", system.current, (3,)),
+    ):
+        if array.shape != shape:
+            raise ConfigError(f"{name}: has shape {array.shape}, needs {shape}")
 
 
 @kernel

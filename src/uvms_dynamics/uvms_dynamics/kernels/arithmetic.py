@@ -17,7 +17,9 @@ from uvms_dynamics.kernels.primitives import (
     with_sign_of,
 )
 
-_PI_LOW = 1.2246467991473532e-16  # what float64 leaves out of pi
+# pi in parts of 33 bits, which a whole number below 2^20 multiplies without rounding: not every
+# processor rounds a product and the sum behind it once
+_PI_HIGH, _PI_MIDDLE, _PI_LOW = 3.1415926534682512, 1.2154201012607932e-10, 4.044532497591901e-21
 _LN2_HIGH, _LN2_LOW = 6.93147180369123816490e-01, 1.90821492927058770002e-10
 _TANH_IS_ONE = 20.0  # 1 - tanh(20) is 8e-18
 
@@ -37,7 +39,7 @@ _E2, _E3, _E4, _E5, _E6, _E7, _E8, _E9, _E10, _E11, _E12, _E13 = (
 def sine_cosine(x):
     """Sine and cosine of x, in rad: Taylor series after taking off the nearest multiple of pi."""
     k = (x * (1.0 / math.pi) + ROUND) - ROUND
-    r = (x - k * math.pi) - k * _PI_LOW
+    r = ((x - k * _PI_HIGH) - k * _PI_MIDDLE) - k * _PI_LOW
     odd = k - 2.0 * ((0.5 * k + ROUND) - ROUND)  # -1, 0 or 1
     sign = 1.0 - 2.0 * odd * odd
     z = r * r

@@ -17,7 +17,7 @@ from uvms_dynamics.kernels.layout import (
     TOOL_POSITION,
     TOOL_ROTATION,
 )
-from uvms_dynamics.kernels.motion import check_joints, down_in_body
+from uvms_dynamics.kernels.motion import check_joints, check_quaternion, down_in_body
 from uvms_dynamics.kernels.spatial import cross, load3
 from uvms_dynamics.rotations import quat_to_matrix
 
@@ -78,6 +78,7 @@ def end_effector(model, position, quat, q):
 
     position (3,) m and quat (4,) are the vehicle's pose in the world, q (n,) rad.
     """
+    check_quaternion(quat)
     check_joints(model, q, q, q)
     n = q.shape[0]
     frames = np.empty((n + 1, _FRAME_COLUMNS))
@@ -103,6 +104,7 @@ def end_effector_jacobian(model, quat, q):
 
     Eq. (12), corrected from the print: columns [z x (r_tool - r_joint); z] of the joints.
     """
+    check_quaternion(quat)
     check_joints(model, q, q, q)
     n = q.shape[0]
     frames = np.empty((n + 1, _FRAME_COLUMNS))
@@ -138,6 +140,7 @@ def restoring_wrench(model, quat, q):
     Eq. (13), with the sign of buoyancy and the names of CB and CG corrected from the print:
     f = sum (m g - rho V g) k, n = P x k, P = sum m g r_g - rho V g r_b, k the down direction.
     """
+    check_quaternion(quat)
     check_joints(model, q, q, q)
     n = q.shape[0]
     frames = np.empty((n + 1, _FRAME_COLUMNS))

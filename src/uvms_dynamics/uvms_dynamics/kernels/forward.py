@@ -25,6 +25,8 @@ from uvms_dynamics.kernels.layout import (
 )
 from uvms_dynamics.kernels.motion import (
     check_joints,
+    check_motion,
+    check_quaternion,
     down_in_body,
     hull_bias_force,
     into_body,
@@ -56,8 +58,10 @@ def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     The whole system at once, no lagged acceleration; weight, buoyancy, damping and drag are
     counted, joint friction and stops are not. Articulated-body algorithm (Featherstone 2008,
     sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
-    Raises ValueError for joint values that do not fit the model.
+    Raises ValueError for arrays of the wrong length.
     """
+    check_quaternion(quat)
+    check_motion(nu_r, nu_r)
     check_joints(model, q, q_dot, tau[6:])
     out = np.empty(6 + q.shape[0])
     forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, make_workspace(model), out)

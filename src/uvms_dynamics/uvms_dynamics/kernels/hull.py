@@ -5,7 +5,13 @@ import numpy as np
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.layout import ADDED_MASS, HULL, JOINTS
-from uvms_dynamics.kernels.motion import hull_bias_force, hull_damping, into_body, into_hull
+from uvms_dynamics.kernels.motion import (
+    check_motion,
+    hull_bias_force,
+    hull_damping,
+    into_body,
+    into_hull,
+)
 from uvms_dynamics.kernels.spatial import gyroscopic, plus, times
 
 
@@ -15,6 +21,7 @@ def hull_bias_wrench(model, nu_r):
 
     nu_r (6,) is the velocity relative to the water, body frame. Section 2.2 of the paper.
     """
+    check_motion(nu_r, nu_r)
     nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
     no_weight = (0.0, 0.0, 0.0)
     wrench = into_body(model, hull_bias_force(model, into_hull(model, nu), no_weight))
@@ -27,6 +34,7 @@ def hull_bias_wrench(model, nu_r):
 @kernel
 def hull_hydrodynamic_wrench(model, nu_r, nu_r_dot):
     """What the water does TO the hull (6,): -(M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r)."""
+    check_motion(nu_r, nu_r_dot)
     nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
     rate = (nu_r_dot[0], nu_r_dot[1], nu_r_dot[2], nu_r_dot[3], nu_r_dot[4], nu_r_dot[5])
     inertia = load_inertia(model, np.int64(model[HULL, JOINTS]) + 1, ADDED_MASS)

@@ -8,6 +8,8 @@ from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import FORCE, HULL, INERTIA, ROTOR
 from uvms_dynamics.kernels.motion import (
     check_joints,
+    check_motion,
+    check_quaternion,
     down_in_body,
     hull_bias_force,
     into_body,
@@ -38,6 +40,8 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     without joint friction and limits. nu_r (6,) is relative to the water, body frame, nu_r_dot
     the derivative of its components; quat (4,); q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
     """
+    check_quaternion(quat)
+    check_motion(nu_r, nu_r_dot)
     check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6 + n)
@@ -61,6 +65,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     counts. Eq. (14)-(15) with omega x (I omega), corrected from the print. Arguments as in
     `inverse_dynamics`; body frame.
     """
+    check_motion(nu_r, nu_r_dot)
     check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6)

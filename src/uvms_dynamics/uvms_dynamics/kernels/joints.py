@@ -13,6 +13,7 @@ from uvms_dynamics.kernels.layout import (
     VISCOUS,
     WIDTH,
 )
+from uvms_dynamics.kernels.motion import check_joints
 from uvms_dynamics.kernels.primitives import larger
 
 
@@ -23,6 +24,7 @@ def joint_passive_torque(model, q, q_dot):
     Friction -(b q_dot + c tanh(q_dot / w)) dissipates at every rate. Beyond a limit by d the
     stop pushes back with k d (1 + e d_dot), never pulling (Hunt and Crossley 1975).
     """
+    check_joints(model, q, q_dot, q_dot)
     out = np.empty(q.shape[0])
     for i in range(q.shape[0]):
         out[i] = passive_torque(model, i + 1, q[i], q_dot[i])

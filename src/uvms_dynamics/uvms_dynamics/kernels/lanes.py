@@ -205,6 +205,11 @@ def with_lane(_context, value, lane, number):
     return value(value, types.intp, types.float64), generate
 
 
+def is_table(kind: types.Type) -> bool:
+    """Whether this is what the functions that count through rows can read: float64, contiguous."""
+    return isinstance(kind, types.Array) and kind.is_c_contig and kind.dtype == types.float64
+
+
 def _items(context: Any, builder: Any, kind: types.Type, table: Any, k: Any) -> Any:
     """Pointer to eight numbers of a contiguous table from number k on, counted through its rows."""
     array = context.make_array(kind)(context, builder, table)
@@ -214,6 +219,8 @@ def _items(context: Any, builder: Any, kind: types.Type, table: Any, k: Any) -> 
 @intrinsic
 def lanes_at(_context, table, k):
     """Eight numbers of a contiguous table from number k on, counted through its rows."""
+    if not is_table(table):
+        return None
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         place = _items(context, builder, signature.args[0], *args)
@@ -225,6 +232,8 @@ def lanes_at(_context, table, k):
 @intrinsic
 def put_lanes(_context, table, k, value):
     """Write eight numbers of a contiguous table from number k on, counted through its rows."""
+    if not is_table(table):
+        return None
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         place = _items(context, builder, signature.args[0], *args[:2])

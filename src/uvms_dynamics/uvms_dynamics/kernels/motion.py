@@ -54,6 +54,20 @@ def check_joints(model, q, q_dot, other):
 
 
 @inner
+def check_quaternion(quat):
+    """Raise ValueError unless a quaternion has four values: kernels read without bounds."""
+    if len(quat) != 4:
+        raise ValueError("quat needs 4 values: x, y, z, w")
+
+
+@inner
+def check_motion(nu_r, nu_r_dot):
+    """Raise ValueError unless both have six values."""
+    if len(nu_r) != 6 or len(nu_r_dot) != 6:
+        raise ValueError("nu_r and nu_r_dot need 6 values: linear, then angular")
+
+
+@inner
 def down_in_body(x, y, z, w):
     """World's down (0, 0, 1) in the body frame: the last row of R_world_body."""
     return 2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)

@@ -11,7 +11,7 @@ from numba import types
 from numba.core import cgutils
 
 from uvms_dynamics.kernels.jit import intrinsic
-from uvms_dynamics.kernels.lanes import LanesType, lanes
+from uvms_dynamics.kernels.lanes import LanesType, is_table, lanes
 
 _MANTISSA_BITS, _EXPONENT_BIAS = 52, 1023.0
 ROUND = 1.5 * 2.0**_MANTISSA_BITS
@@ -112,6 +112,8 @@ def two_to_the(_context, k):
 @intrinsic
 def item(_context, table, k):
     """Number k of a contiguous table, counted through its rows."""
+    if not is_table(table):
+        return None
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         array = context.make_array(signature.args[0])(context, builder, args[0])
@@ -123,6 +125,8 @@ def item(_context, table, k):
 @intrinsic
 def put_item(_context, table, k, number):
     """Write number k of a contiguous table, counted through its rows."""
+    if not is_table(table):
+        return None
 
     def generate(context: Any, builder: Any, signature: Any, args: Any) -> Any:
         array = context.make_array(signature.args[0])(context, builder, args[0])

@@ -10,6 +10,8 @@ the body origin follows from the mounting position.
 
 The last eight are errors of sensors that do not average out. Most of them cannot be told apart from
 the motion (a heading bias from a drift, say): they are there so that the covariance knows of them.
+
+SIZE is compiled into the numba kernels of this package.
 """
 
 from typing import NamedTuple
