@@ -1,8 +1,9 @@
 """Paired timing: ours and its references take turns in one process, round by round.
 
-Machines are noisy, and the noise comes and goes in seconds. Within a round of some milliseconds
-both sides meet the same machine, so that the ratio of a round means something where two separate
-times do not. The median of the rounds' ratios is what counts.
+Machines are noisy: the noise comes and goes in seconds, and other programs take their turns of some
+milliseconds. Within a round of a millisecond or two both sides mostly meet the same machine, so
+that the ratio of a round means something where two separate times do not. The median of the rounds'
+ratios is what counts.
 """
 
 import gc
@@ -11,9 +12,11 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
-ROUNDS = 31
-ROUND_S = 0.004
-"""About how long each side works in a round."""
+ROUNDS, MOST_ROUNDS = 31, 125
+"""Rounds of calls that take long by themselves, and of short ones."""
+
+ROUND_S = 0.001
+"""About how long each side works in a round, or one call where that takes longer."""
 
 Work = Callable[[], object]
 
@@ -29,14 +32,16 @@ class Timing:
     ratio: dict[str, float]
 
 
-def paired(ours: Work, references: Mapping[str, Work], rounds: int = ROUNDS) -> Timing:
-    """Time `ours` against each of `references`.
+def paired(ours: Work, references: Mapping[str, Work], rounds: int | None = None) -> Timing:
+    """Time `ours` against each of `references`, in as many rounds as fit their length or as said.
 
     A side's calls per round are chosen so that it works for about ROUND_S; every other round goes
     through the sides backwards, so that none is always first.
     """
     sides = {"": ours, **references}
-    counts = {name: _calls_per_round(work) for name, work in sides.items()}
+    once = {name: _seconds_of_one(work) for name, work in sides.items()}
+    counts = {name: max(1, round(ROUND_S / seconds)) for name, seconds in once.items()}
+    rounds = rounds or max(ROUNDS, int(MOST_ROUNDS * min(1.0, ROUND_S / max(once.values()))))
     times: dict[str, list[float]] = {name: [] for name in sides}
     order = list(sides)
     gc.collect()
@@ -73,7 +78,6 @@ def processor_seconds_per_call(work: Work, count: int) -> float:
     return (time.process_time() - began) / count
 
 
-def _calls_per_round(work: Work) -> int:
+def _seconds_of_one(work: Work) -> float:
     work()  # compiles, and fills caches
-    once = min(seconds_per_call(work, 1) for _ in range(3))
-    return max(1, round(ROUND_S / once))
+    return min(seconds_per_call(work, 1) for _ in range(3))
