@@ -35,13 +35,15 @@ class Timing:
 def paired(ours: Work, references: Mapping[str, Work], rounds: int | None = None) -> Timing:
     """Time `ours` against each of `references`, in as many rounds as fit their length or as said.
 
-    A side's calls per round are chosen so that it works for about ROUND_S; every other round goes
-    through the sides backwards, so that none is always first.
+    A side's calls per round are chosen so that all work equally long, about ROUND_S, and are
+    disturbed equally often; every other round goes through the sides backwards, so that none is
+    always first.
     """
     sides = {"": ours, **references}
     once = {name: _seconds_of_one(work) for name, work in sides.items()}
-    counts = {name: max(1, round(ROUND_S / seconds)) for name, seconds in once.items()}
-    rounds = rounds or max(ROUNDS, int(MOST_ROUNDS * min(1.0, ROUND_S / max(once.values()))))
+    long = max(ROUND_S, *once.values())
+    counts = {name: max(1, round(long / seconds)) for name, seconds in once.items()}
+    rounds = rounds or max(ROUNDS, int(MOST_ROUNDS * ROUND_S / long))
     times: dict[str, list[float]] = {name: [] for name in sides}
     order = list(sides)
     gc.collect()
