@@ -13,6 +13,7 @@ from uvms_dynamics import (
     quat_to_matrix,
     restoring_wrench,
 )
+from uvms_dynamics.vehicle import vehicle_from_data
 
 SIZES = [1, 2, 4, 8, 16, 32]
 
@@ -97,3 +98,19 @@ def test_inverse_undoes_forward_dynamics_and_forward_inverse(wet):
     force = inverse_dynamics(model, *motion)
     found = forward_dynamics(model, motion.quat, motion.nu, *state, force)
     assert norm_error(found, np.concatenate([motion.nu_dot, motion.q_ddot])) < 1e-10
+
+
+@pytest.mark.parametrize("times", [1e1, 1e3, 1e5])
+def test_forward_dynamics_of_a_plate_whose_water_outweighs_it(times):
+    """Added mass so many times the mass, along one slanting axis only: against LAPACK's solve."""
+    vehicle, motion = random_vehicle(8, 4), random_motion(np.random.default_rng(8), 4)
+    data, normal = vehicle.model_dump(mode="json"), np.array([2.0, -1.0, 2.0]) / 3.0
+    added = np.zeros((6, 6))
+    added[:3, :3] = times * vehicle.hull.mass_kg * np.outer(normal, normal)
+    data["hull"]["added_mass"] = added.tolist()
+    model = build_model(vehicle_from_data(data))
+    rest = motion._replace(nu_dot=np.zeros(6), q_ddot=np.zeros(4))
+    tau = np.linspace(-20.0, 20.0, 10)
+    expected = np.linalg.solve(mass_matrix(model, motion.q), tau - inverse_dynamics(model, *rest))
+    found = forward_dynamics(model, motion.quat, motion.nu, motion.q, motion.q_dot, tau)
+    assert norm_error(found, expected) < 1e-11
