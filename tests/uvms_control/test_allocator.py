@@ -9,11 +9,10 @@ from hypothesis import strategies as st
 from uvms_control.allocation import (
     ThrustAllocator,
     axes_without_authority,
-    thruster_matrix,
 )
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
-from uvms_dynamics import load_vehicle
+from uvms_dynamics import configuration_matrix, load_vehicle
 from uvms_dynamics.errors import SignalError
 from uvms_dynamics.signals import Wrench, to_nanoseconds
 
@@ -34,7 +33,9 @@ def random_layout(seed, m):
     rng = np.random.default_rng(seed)
     directions = rng.normal(size=(m, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
-    return thruster_matrix(rng.uniform(-1.0, 1.0, (m, 3)), directions), rng.uniform(10.0, 100.0, m)
+    return configuration_matrix(rng.uniform(-1.0, 1.0, (m, 3)), directions), rng.uniform(
+        10.0, 100.0, m
+    )
 
 
 def test_the_reference_vehicle_has_the_authority_its_data_sheet_states():
@@ -156,7 +157,7 @@ def test_slew_awareness_bounds_the_change_in_a_tick():
 
 
 def test_axes_without_authority_are_named():
-    verticals = thruster_matrix(
+    verticals = configuration_matrix(
         np.array([[0.5, 0.1, 0.0], [0.5, -0.1, 0.0], [-0.5, 0.0, 0.0]]),
         np.tile([0.0, 0.0, 1.0], (3, 1)),
     )
@@ -173,7 +174,7 @@ def test_axes_without_authority_are_named():
 
 
 def test_coupled_axes_count_as_without_authority():
-    one = thruster_matrix(np.array([[0.0, 1.0, 0.0]]), np.array([[1.0, 0.0, 0.0]]))
+    one = configuration_matrix(np.array([[0.0, 1.0, 0.0]]), np.array([[1.0, 0.0, 0.0]]))
     assert axes_without_authority(one) == ("X", "Y", "Z", "K", "M", "N")
 
 

@@ -18,12 +18,6 @@ def effort_limits(vehicle: Vehicle) -> Array:
     return np.array([joint.effort_limit_nm for joint in vehicle.arm.joints])
 
 
-def thruster_geometry(vehicle: Vehicle) -> tuple[Array, Array]:
-    """Where thrusters act (m, 3) in m and along what (m, 3), body frame."""
-    positions = np.array([thruster.position_m for thruster in vehicle.thrusters])
-    return positions, np.array([thruster.direction for thruster in vehicle.thrusters])
-
-
 def thruster_limits(vehicle: Vehicle) -> tuple[Array, Array]:
     """Largest thrust (m,) in N and largest rate of thrust (m,) in N/s."""
     limits = np.array([thruster.limit_n for thruster in vehicle.thrusters])

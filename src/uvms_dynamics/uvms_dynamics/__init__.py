@@ -29,7 +29,7 @@ from uvms_dynamics.rotations import (
     rpy_to_quat,
     skew,
 )
-from uvms_dynamics.thrusters import build_thrusters, thruster_matrix
+from uvms_dynamics.thrusters import build_thrusters, configuration_matrix, thruster_matrix
 from uvms_dynamics.vehicle import Vehicle, dump_vehicle, load_vehicle
 
 __all__ = [
@@ -44,6 +44,7 @@ __all__ = [
     "build_model",
     "build_thrusters",
     "compile_cache",
+    "configuration_matrix",
     "coupling_wrench",
     "dump_vehicle",
     "end_effector",

@@ -8,10 +8,8 @@ from uvms_dynamics.errors import ConfigError
 from uvms_dynamics.integrator import System, derivative, finish_step, state_size
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.lanes import LANES, lane_table, lane_vector
-from uvms_dynamics.kernels.layout import HULL, JOINTS, WORK_COLUMNS
+from uvms_dynamics.kernels.layout import FIRST, HULL, JOINTS, WORK_COLUMNS
 from uvms_dynamics.signals import Array
-
-_FIRST = np.int64(0)
 
 
 def advance_batch(
@@ -62,7 +60,7 @@ def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, 
         _take(thrust_command, first, lanes_thrust)
         _take(effort, first, lanes_effort)
         for _ in range(steps):
-            derivative(model, thrusters, current, n, m, state, thrust, torque, work, stage, _FIRST)
+            derivative(model, thrusters, current, n, m, state, thrust, torque, work, stage, FIRST)
             finish_step(
                 model, thrusters, current, n, m, state, thrust, torque, step, work, stage, trial
             )

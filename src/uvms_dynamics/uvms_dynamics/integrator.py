@@ -12,7 +12,7 @@ import numpy as np
 from uvms_dynamics.kernels.forward import accelerate
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.joints import passive_torque
-from uvms_dynamics.kernels.layout import HULL, RATE, TORQUE
+from uvms_dynamics.kernels.layout import FIRST, HULL, RATE, TORQUE
 from uvms_dynamics.kernels.layout import JOINTS as N_JOINTS
 from uvms_dynamics.kernels.motion import (
     down_in_body,
@@ -20,12 +20,11 @@ from uvms_dynamics.kernels.motion import (
     set_angle,
 )
 from uvms_dynamics.kernels.primitives import root
-from uvms_dynamics.kernels.spatial import load6, plus, store6
+from uvms_dynamics.kernels.spatial import load6, plus, six, store6
 from uvms_dynamics.model import Model
 from uvms_dynamics.signals import Array
 from uvms_dynamics.thrusters import Thrusters, thrust_rate
 
-_FIRST = np.int64(0)
 POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
 
@@ -68,7 +67,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
     work, stage, trial = scratch
     for s in range(last + 1):
-        derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, stage, _FIRST)
+        derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, stage, FIRST)
         _record(x, stage, states, rates, s)
         if s < last:
             finish_step(
@@ -105,7 +104,7 @@ def finish_step(
 def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
     """Row k of out: the derivative of the state x under these commands."""
     a, b, c, d = _unit_quaternion(x)
-    nu_r = _six(x, VELOCITY)
+    nu_r = six(x, VELOCITY)
     _set_pose_rates(current, nu_r, a, b, c, d, out, k)
     for i in range(1, n + 1):
         angle, rate = x[JOINTS + i - 1], x[JOINTS + n + i - 1]
@@ -121,12 +120,6 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
     for i in range(m):
         thrust = x[JOINTS + 2 * n + i]
         out[k, JOINTS + 2 * n + i] = thrust_rate(thrusters, i, thrust, thrust_command[i])
-
-
-@inner
-def _six(x, k):
-    """Six numbers of the state from k on."""
-    return x[k], x[k + 1], x[k + 2], x[k + 3], x[k + 4], x[k + 5]
 
 
 @inner
@@ -155,7 +148,7 @@ def _set_pose_rates(current, nu_r, a, b, c, d, out, k):
 @inner
 def _thruster_wrench(thrusters, x, first):
     """Body wrench of the thrusters, whose thrust stands in x from `first` on."""
-    wrench = _scaled_row(thrusters, _FIRST, x[first])
+    wrench = _scaled_row(thrusters, FIRST, x[first])
     for i in range(1, thrusters.shape[0]):
         wrench = plus(wrench, _scaled_row(thrusters, i, x[first + i]))
     return wrench
@@ -164,5 +157,5 @@ def _thruster_wrench(thrusters, x, first):
 @inner
 def _scaled_row(thrusters, i, thrust):
     """Wrench of thruster i."""
-    k = load6(thrusters, i, _FIRST)
+    k = load6(thrusters, i, FIRST)
     return k[0] * thrust, k[1] * thrust, k[2] * thrust, k[3] * thrust, k[4] * thrust, k[5] * thrust

@@ -4,7 +4,6 @@ from uvms_control.allocation.allocator import ThrustAllocator
 from uvms_control.allocation.authority import (
     axes_without_authority,
     axis_authority,
-    thruster_matrix,
 )
 from uvms_control.allocation.box_qp import solve_box_qp
 from uvms_control.allocation.least_squares import BoundedLeastSquares
@@ -15,5 +14,4 @@ __all__ = [
     "axes_without_authority",
     "axis_authority",
     "solve_box_qp",
-    "thruster_matrix",
 ]

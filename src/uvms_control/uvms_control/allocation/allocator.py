@@ -13,14 +13,13 @@ from uvms_control.allocation.authority import (
     AXES,
     axes_without_authority,
     axis_authority,
-    thruster_matrix,
 )
 from uvms_control.allocation.least_squares import BoundedLeastSquares
 from uvms_control.checks import checked
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
-from uvms_control.vehicle_data import thruster_geometry, thruster_limits
-from uvms_dynamics import Vehicle
+from uvms_control.vehicle_data import thruster_limits
+from uvms_dynamics import Vehicle, thruster_matrix
 from uvms_dynamics.errors import SignalError
 from uvms_dynamics.signals import Allocation, Array, ThrusterCommand, Wrench, to_seconds
 
@@ -37,7 +36,7 @@ class ThrustAllocator:
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig):
         """`vehicle` from `uvms_dynamics.load_vehicle`; any number of thrusters."""
-        matrix = thruster_matrix(*thruster_geometry(vehicle))
+        matrix = thruster_matrix(vehicle)
         limits, slew = thruster_limits(vehicle)
         self._setup(matrix, limits, slew, config)
 

@@ -1,4 +1,4 @@
-"""What a thruster layout can do: its matrix, its authority on each axis, its missing axes."""
+"""What a thruster layout can do: its authority on each axis, its missing axes."""
 
 import numpy as np
 from scipy.optimize import linprog
@@ -8,15 +8,6 @@ from uvms_dynamics.signals import Array
 AXES = ("X", "Y", "Z", "K", "M", "N")
 # Relative size below which a part of an axis counts as outside the span of the thrusters.
 SPAN_TOLERANCE = 1e-9
-
-
-def thruster_matrix(positions: Array, directions: Array) -> Array:
-    """B (6, m): column i is the wrench [d_i; r_i x d_i] about the body origin of one newton.
-
-    `positions` (m, 3) in m and `directions` (m, 3), unit vectors, in the body frame (Fossen,
-    Handbook of Marine Craft Hydrodynamics and Motion Control, 2nd ed., eq. (12.230)).
-    """
-    return np.ascontiguousarray(np.hstack([directions, np.cross(positions, directions)]).T)
 
 
 def axis_authority(matrix: Array, limits: Array) -> Array:

@@ -7,6 +7,7 @@ from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     COS_TURN,
     COS_TWIST,
+    FIRST,
     HULL,
     NET_MOMENT,
     NET_WEIGHT,
@@ -22,7 +23,6 @@ from uvms_dynamics.kernels.spatial import cross, load3
 from uvms_dynamics.rotations import quat_to_matrix
 
 # A frame in the body frame is a row of twelve: its rotation row by row, then its origin.
-_FIRST = np.int64(0)
 _ORIGIN = np.int64(9)
 _FRAME_COLUMNS = 12
 
@@ -114,7 +114,7 @@ def end_effector_jacobian(model, quat, q):
     jacobian = np.zeros((6, 6 + n))
     unit = np.eye(3)
     for k in range(3):
-        axis = load3(unit, k, _FIRST)
+        axis = load3(unit, k, FIRST)
         _column(jacobian, k, body, axis, (0.0, 0.0, 0.0))
         _column(jacobian, 3 + k, body, cross(axis, (x, y, z)), axis)
     for i in range(1, n + 1):

@@ -14,6 +14,7 @@ from uvms_dynamics.kernels.inertia import (
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     AXIS_FORCE,
+    FIRST,
     FORCE,
     HULL,
     INERTIA,
@@ -46,6 +47,7 @@ from uvms_dynamics.kernels.spatial import (
     minus,
     motion_to_child,
     plus,
+    six,
     store6,
     to_child,
 )
@@ -55,7 +57,7 @@ from uvms_dynamics.kernels.spatial import (
 def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     """Accelerations (6+n,) = (nu_r_dot, q_ddot) under tau (6+n,) = (body wrench, joint torques).
 
-    The whole system at once, no lagged acceleration; weight, buoyancy, damping and drag are
+    quat (4,) is a unit quaternion. The whole system at once, no lagged acceleration; weight, buoyancy, damping and drag are
     counted, joint friction and stops are not. Articulated-body algorithm (Featherstone 2008,
     sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
     Raises ValueError for arrays of the wrong length.
@@ -73,8 +75,8 @@ def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
     n = q.shape[0]
     down = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    nu = (nu_r[0], nu_r[1], nu_r[2], nu_r[3], nu_r[4], nu_r[5])
-    wrench = (tau[0], tau[1], tau[2], tau[3], tau[4], tau[5])
+    nu = six(nu_r, FIRST)
+    wrench = six(tau, FIRST)
     for i in range(1, n + 1):
         set_angle(model, work, i, q[i - 1])
         work[i, RATE], work[i, TORQUE] = q_dot[i - 1], tau[5 + i]

@@ -5,7 +5,7 @@ import numpy as np
 from uvms_dynamics.kernels.drag import resist
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.layout import FORCE, HULL, INERTIA, ROTOR
+from uvms_dynamics.kernels.layout import FIRST, FORCE, HULL, INERTIA, ROTOR
 from uvms_dynamics.kernels.motion import (
     check_joints,
     check_motion,
@@ -26,6 +26,7 @@ from uvms_dynamics.kernels.spatial import (
     load6,
     motion_to_child,
     plus,
+    six,
     store6,
     times,
     to_child,
@@ -38,7 +39,7 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
 
     M(q) a + C nu + D nu less weight and buoyancy, of the hull and all links with added mass;
     without joint friction and limits. nu_r (6,) is relative to the water, body frame, nu_r_dot
-    the derivative of its components; quat (4,); q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
+    the derivative of its components; quat (4,) unit; q, q_dot, q_ddot (n,). Eq. (2)-(7), (14)-(15).
     """
     check_quaternion(quat)
     check_motion(nu_r, nu_r_dot)
@@ -46,7 +47,7 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6 + n)
     down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
-    v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
+    v, a = into_hull(model, six(nu_r, FIRST)), into_hull(model, six(nu_r_dot, FIRST))
     _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot)
     force = plus(hull_bias_force(model, v, down), times(load_inertia(model, HULL, INERTIA), a))
     force = into_body(model, plus(force, _carry_inward(model, work, n)))
@@ -69,7 +70,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6)
-    v, a = into_hull(model, _six(nu_r)), into_hull(model, _six(nu_r_dot))
+    v, a = into_hull(model, six(nu_r, FIRST)), into_hull(model, six(nu_r_dot, FIRST))
     no_weight = (0.0, 0.0, 0.0)
     _forces_of_links(model, work, no_weight, v, a, q, q_dot, q_ddot)
     force = into_body(model, _carry_inward(model, work, n))
@@ -102,9 +103,3 @@ def _carry_inward(model, work, n):
         store6(work, i, FORCE, force)
         force = force_to_parent(model, work, i, force)
     return force
-
-
-@inner
-def _six(a):
-    """The six numbers of an array."""
-    return a[0], a[1], a[2], a[3], a[4], a[5]

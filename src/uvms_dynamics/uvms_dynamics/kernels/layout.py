@@ -11,6 +11,8 @@ with: a third of the time to compile.
 
 import numpy as np
 
+FIRST = np.int64(0)
+
 # Model (rows, 48): bodies 0..n, fixtures, then drag cylinders and coefficients, counted by item.
 # Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin
 INERTIA = np.int64(0)  # 21

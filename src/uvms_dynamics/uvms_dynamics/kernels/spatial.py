@@ -43,6 +43,12 @@ def load6(table, i, k):
 
 
 @inner
+def six(a, k):
+    """Motion or force in an array from item k on."""
+    return a[k], a[k + 1], a[k + 2], a[k + 3], a[k + 4], a[k + 5]
+
+
+@inner
 def store6(table, i, k, a):
     """Write a motion or force to row i from column k on."""
     table[i, k], table[i, k + 1], table[i, k + 2] = a[0], a[1], a[2]
