@@ -44,6 +44,7 @@ class _Mount(NamedTuple):
     twist: float  # are seen in the turned frame
     offset: float
 
+
 def build_model(vehicle: Vehicle) -> Model:
     """Table of a vehicle for the kernels."""
     arm, environment = vehicle.arm, vehicle.environment
