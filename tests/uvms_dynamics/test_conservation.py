@@ -42,7 +42,7 @@ def test_energy_of_a_minute_is_lost_at_fourth_order_in_the_step(without_drag):
         assert swap > 1.0
         assert np.ptp(energies[-1]) < 1e-5 * swap
         errors.append([np.ptp(energy) for energy in energies])
-    assert order(errors) == pytest.approx(4.0, abs=0.7)
+    assert order(errors) == pytest.approx(4.0, abs=0.5)
 
 
 def test_momentum_is_lost_at_fourth_order_in_the_step(without_drag):

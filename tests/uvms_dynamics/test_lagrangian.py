@@ -3,7 +3,7 @@
 import independent_dynamics as independent
 import numpy as np
 import pytest
-from random_vehicles import norm_error, random_motion, random_vehicle
+from random_vehicles import changed, norm_error, random_motion, random_vehicle
 
 from uvms_dynamics import (
     build_model,
@@ -63,6 +63,21 @@ def test_weight_and_buoyancy_are_the_slope_of_the_potential_energy(wet):
 def test_drag_is_the_sum_over_the_strips(wet):
     vehicle, motion = wet
     smooth = build_model(random_vehicle(300 + vehicle.n_joints, vehicle.n_joints, drag=False))
+    found = inverse_dynamics(smooth, *motion) - inverse_dynamics(build_model(vehicle), *motion)
+    expected = independent.drag_force(vehicle, motion.nu, motion.q, motion.q_dot)
+    assert norm_error(found, expected) < 1e-10
+
+
+@pytest.mark.parametrize("counts", [[9], [9, 0, 3], [0, 0], [0, 17, 1, 0, 8]], ids=str)
+def test_drag_of_links_with_any_number_of_cylinders(counts):
+    """The kernels take eight cylinders at once, whatever links they belong to."""
+    n, rng = len(counts), np.random.default_rng(7)
+    data = random_vehicle(70 + n, n).model_dump(mode="json")
+    for link, count in zip(data["arm"]["links"], counts, strict=True):
+        pieces = [random_vehicle(int(rng.integers(1000)), 1).arm.links[0] for _ in range(count)]
+        link["drag"] = [piece.drag[0].model_dump() for piece in pieces]
+    vehicle, motion = vehicle_from_data(data), random_motion(rng, n)
+    smooth = build_model(changed(vehicle, drag=False))
     found = inverse_dynamics(smooth, *motion) - inverse_dynamics(build_model(vehicle), *motion)
     expected = independent.drag_force(vehicle, motion.nu, motion.q, motion.q_dot)
     assert norm_error(found, expected) < 1e-10

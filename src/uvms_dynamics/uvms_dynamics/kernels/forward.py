@@ -57,10 +57,10 @@ from uvms_dynamics.kernels.spatial import (
 def forward_dynamics(model, quat, nu_r, q, q_dot, tau):
     """Accelerations (6+n,) = (nu_r_dot, q_ddot) under tau (6+n,) = (body wrench, joint torques).
 
-    quat (4,) is a unit quaternion. The whole system at once, no lagged acceleration; weight, buoyancy, damping and drag are
-    counted, joint friction and stops are not. Articulated-body algorithm (Featherstone 2008,
-    sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and added mass, per body.
-    Raises ValueError for arrays of the wrong length.
+    quat (4,) is a unit quaternion. The whole system at once, no lagged acceleration; weight,
+    buoyancy, damping and drag are counted, joint friction and stops are not. Articulated-body
+    algorithm (Featherstone 2008, sec. 7.3 and 9.4) with a general symmetric 6x6 inertia, rigid and
+    added mass, per body. Raises ValueError for arrays of the wrong length.
     """
     check_quaternion(quat)
     check_motion(nu_r, nu_r)
