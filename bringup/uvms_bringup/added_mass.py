@@ -11,6 +11,7 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
+from uvms_bringup.scenario import vehicle_path
 from uvms_dynamics import load_vehicle
 from uvms_dynamics.panel_method import (
     AddedMassEstimate,
@@ -59,7 +60,7 @@ def add_command(commands: Any) -> None:
     command.set_defaults(do=added_mass)
     add = command.add_argument
     add("body", metavar="BODY", help="mesh file, shape:SIZES, or part of --vehicle")
-    add("--vehicle", metavar="FILE", help="vehicle file whose hull or link BODY names")
+    add("--vehicle", metavar="FILE", help="name or file of a vehicle whose hull or link BODY names")
     add("--scale", type=float, metavar="M", help="unit of the mesh file in metres (mm: 0.001)")
     add("--flip", action="store_true", help="turn the mesh's normals round")
     add(
@@ -109,7 +110,7 @@ def _body(options: argparse.Namespace) -> Body:
     if options.vehicle is not None:
         own = {**of_files, **of_frames, "--density": options.density is not None}
         _refuse(own, f"part {name} of a vehicle file, which says all that itself")
-        return vehicle_body(load_vehicle(options.vehicle), name, options.panels)
+        return vehicle_body(load_vehicle(vehicle_path(options.vehicle)), name, options.panels)
     density = SEA_WATER if options.density is None else options.density
     zero = np.zeros(3)
     pose = pose_of(

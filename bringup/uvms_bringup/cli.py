@@ -23,6 +23,7 @@ EXAMPLES = """examples:
   uvms report runs/without_observer/run.mcap   figures and a page about a run
   uvms replay runs/without_observer/run.mcap --into controller
   uvms added-mass spheroid:2.4,0.38            added mass of a shape or of a mesh file
+  uvms validate bringup/data/pool_trials --vehicle bluerov2_alpha5
 """
 
 

@@ -147,7 +147,7 @@ class Scenario(Config):
             VehicleFileError: its file or an override is not right.
             ScenarioError: there is no such vehicle, or the run cannot start with it.
         """
-        vehicle = load_vehicle(_vehicle_path(self.vehicle), self.vehicle_overrides)
+        vehicle = load_vehicle(vehicle_path(self.vehicle), self.vehicle_overrides)
         check_start(vehicle, self.plant, self.planner)
         return vehicle
 
@@ -203,7 +203,11 @@ def _scenario_path(name: str) -> Path:
     return known[name]
 
 
-def _vehicle_path(name: str) -> Path:
+def vehicle_path(name: str) -> Path:
+    """The file of a vehicle that comes with the project, or the YAML file that `name` is.
+
+    Raises ScenarioError for a name that is neither.
+    """
     path = Path(name)
     if path.suffix in FILE_SUFFIXES:
         return path

@@ -4,6 +4,8 @@ import argparse
 import sys
 from typing import Any
 
+from uvms_bringup.scenario import known_vehicles, vehicle_path
+
 VALIDATE = """Drive the full dynamic model of the vehicle with the measured joint motion of recorded
 trials, from the measured initial state, and compare its roll and pitch with the measured ones."""
 
@@ -15,10 +17,22 @@ _FOLDER = "folder with one CSV a trial, as bringup/data/pool_trials (its README 
 
 def add_commands(commands: Any) -> None:
     """Add both to the command line."""
-    add = _command(commands, "validate", validate, "hold the model against trials", VALIDATE)
+    add = _command(
+        commands,
+        "validate",
+        validate,
+        "predict recorded trials, and compare",
+        VALIDATE,
+    )
     add("--output", metavar="DIR", help="write TRIAL.csv (t,roll,pitch; degrees) and table.txt")
     add("--figures", action="store_true", help="draw the trials into the folder of --output")
-    add = _command(commands, "identify", identify, "fit constants to trials", IDENTIFY)
+    add = _command(
+        commands,
+        "identify",
+        identify,
+        "fit what recorded trials determine",
+        IDENTIFY,
+    )
     add("--output", metavar="FILE", required=True, help="vehicle file to write")
     add(
         "--cross-validate",
@@ -32,7 +46,12 @@ def _command(commands: Any, name: str, action: Any, text: str, description: str)
     command = commands.add_parser(name, help=text, description=description)
     command.set_defaults(do=action)
     command.add_argument("trials", metavar="TRIALS_DIR", help=_FOLDER)
-    command.add_argument("--vehicle", metavar="FILE", required=True, help="vehicle file")
+    command.add_argument(
+        "--vehicle",
+        metavar="VEHICLE",
+        required=True,
+        help=f"one of {', '.join(known_vehicles())}, or a YAML file",
+    )
     return command.add_argument
 
 
@@ -43,7 +62,8 @@ def validate(options: argparse.Namespace) -> int:
 
     if options.figures and options.output is None:
         raise TrialError("--figures needs --output DIR, the folder to draw them into")
-    print(run(options.trials, options.vehicle, options.output, options.figures))
+    vehicle = str(vehicle_path(options.vehicle))
+    print(run(options.trials, vehicle, options.output, options.figures, _tell))
     return 0
 
 
@@ -52,9 +72,10 @@ def identify(options: argparse.Namespace) -> int:
     from uvms_bringup.trials.cross_validate import cross_validated
     from uvms_bringup.trials.identify import identify_file, report, write
 
-    found, courses = identify_file(options.trials, options.vehicle, _tell)
+    vehicle = str(vehicle_path(options.vehicle))
+    found, courses = identify_file(options.trials, vehicle, _tell)
     print(report(found))
-    print(f"written: {write(found, options.vehicle, options.output)}", flush=True)
+    print(f"written: {write(found, vehicle, options.output)}", flush=True)
     if options.cross_validate:
         print(cross_validated(found, courses, _tell))
     return 0

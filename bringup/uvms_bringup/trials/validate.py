@@ -1,6 +1,6 @@
 """`uvms validate`: hold the model against recorded trials."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -45,9 +45,17 @@ def table(found: list[Outcome]) -> Scores:
     return {m: [scores(each.trial, each.said[m].tilt) for each in found] for m in models}
 
 
-def validate(trials: str, vehicle: str, output: str | None, figures: bool) -> str:
+def validate(
+    trials: str,
+    vehicle: str,
+    output: str | None,
+    figures: bool,
+    tell: Callable[[str], None] = lambda line: None,
+) -> str:
     """Predict, write what was asked for, and return the table."""
-    found = list(outcomes(load_vehicle(vehicle), read_trials(trials)))
+    described, recorded = load_vehicle(vehicle), read_trials(trials)
+    tell(f"{len(recorded)} trials of {described.name} (some 20 s more where kernels compile first)")
+    found = list(outcomes(described, recorded))
     text = table_text([each.trial.name for each in found], table(found))
     if output is None:
         return text
