@@ -1,6 +1,7 @@
 """The dynamics of one's own chain: a hull and two links in the water, as plain data, without ROS.
 
-What is not said follows from the shapes, or is as in the reference vehicle.
+Masses, buoyancy, inertia, added mass and drag of the arm follow from the shapes. What is not said
+at all (thrusters, sensors, water, drives) is as in the reference vehicle.
 Run it: python examples/dynamics_own_chain.py
 """
 
@@ -13,7 +14,10 @@ upper = {"center_m": [-0.25, 0, 0], "axis": [1, 0, 0], "radius_m": 0.04, "length
 lower = {"center_m": [-0.2, 0, 0], "axis": [1, 0, 0], "radius_m": 0.035, "length_m": 0.4}
 vehicle = load_vehicle(
     overrides={
+        "name": "own_auv",
         "hull.spheroid": {"length_m": 1.2, "diameter_m": 0.4},
+        "hull.linear_damping": [8.0, 15.0, 15.0, 0.5, 2.0, 2.0],  # does not follow from a shape
+        "hull.quadratic_damping": [25.0, 120.0, 120.0, 0.5, 8.0, 8.0],
         "arm.base": {"position_m": [0.4, 0.0, 0.2], "rpy_deg": [90.0, 0.0, 0.0]},
         "arm.joints": [joint | {"name": "one", "a_m": 0.5}, joint | {"name": "two", "a_m": 0.4}],
         "arm.links": [

@@ -70,6 +70,14 @@ def test_own_chain_inverts_its_own_dynamics(said):
     assert len(masses) == 8
 
 
+def test_courses_over_time_roll_to_where_the_arm_goes(said):
+    *_, last, many = map(numbers, said(FOLDER / "dynamics_over_time.py"))
+    swing, roll = last[1:3]
+    assert 30.0 < swing < 119.0  # on its way, not at the stop
+    low, high = many
+    assert 0.0 < low < roll < high < low + 5.0
+
+
 def test_genetic_plan_disturbs_less_than_the_arm_alone(said):
     ends = [
         numbers(line)[-1]

@@ -1,20 +1,27 @@
-"""Many simulations at once are the same simulations one by one."""
+"""Simulations over time: one with its course, many at once, and what is refused."""
 
 import numpy as np
 import pytest
 from random_vehicles import random_motion, random_vehicle
 
-from uvms_dynamics import System, advance_batch, build_model, build_thrusters
+from uvms_dynamics import (
+    PlantConfig,
+    advance_batch,
+    load_vehicle,
+    make_state,
+    make_system,
+    simulate,
+)
 from uvms_dynamics.errors import ConfigError
 from uvms_dynamics.integrator import advance, make_scratch
+from uvms_dynamics.plant.config import initial_state
 
 STEP, STEPS = 0.002, 20
 CURRENT = np.array([0.3, -0.2, 0.1])
 
 
 def system_of(n):
-    vehicle = random_vehicle(40 + n, n, neutral=True)
-    return System(build_model(vehicle), build_thrusters(vehicle), CURRENT)
+    return make_system(random_vehicle(40 + n, n, neutral=True), CURRENT)
 
 
 def random_starts(system, n, count):
@@ -32,11 +39,8 @@ def random_starts(system, n, count):
 
 
 def one_by_one(system, states, thrust, effort):
-    scratch, out = make_scratch(system), states.copy()
-    table = np.empty((2, STEPS + 1, states.shape[1]))
-    for x, command, torque in zip(out, thrust, effort, strict=True):
-        advance(system, x, command, torque, STEP, scratch, *table)
-    return out
+    each = zip(states, thrust, effort, strict=True)
+    return np.array([simulate(system, *start, STEP, STEPS)[-1] for start in each])
 
 
 @pytest.mark.parametrize("n", [1, 3, 4, 9])
@@ -87,6 +91,59 @@ def test_a_wrong_shape_is_named(which, name):
     given[which] = given[which][:, :-1]
     with pytest.raises(ConfigError, match=rf"{name}: has shape .*, needs \(4, "):
         advance_batch(system, *given, STEP, STEPS)
+
+
+def test_a_course_begins_at_its_start_and_goes_on_where_it_ended():
+    system = system_of(3)
+    x, thrust, effort = (array[0] for array in random_starts(system, 3, 1))
+    whole = simulate(system, x, thrust, effort, STEP, STEPS)
+    assert whole.shape == (STEPS + 1, len(x))
+    np.testing.assert_array_equal(whole[0], x)
+    middle = simulate(system, x, thrust, effort, STEP, 8)[-1]
+    rest = simulate(system, middle, thrust, effort, STEP, STEPS - 8)
+    np.testing.assert_array_equal(rest[-1], whole[-1])
+
+
+def test_a_made_state_is_the_plants_at_rest():
+    vehicle = load_vehicle()
+    config = PlantConfig(initial_position_m=(1.0, 2.0, 3.0))
+    made = make_state(
+        np.radians(vehicle.arm.stowed_deg), vehicle.n_thrusters, position=(1.0, 2.0, 3.0)
+    )
+    np.testing.assert_array_equal(made, initial_state(vehicle, config))
+
+
+@pytest.mark.parametrize("step", [0.0, -0.005, np.nan, np.inf])
+def test_a_step_that_is_none_is_refused(step):
+    system = system_of(1)
+    given = random_starts(system, 1, 2)
+    with pytest.raises(ConfigError, match=r"step: .* s; must be finite and > 0"):
+        advance_batch(system, *given, step, STEPS)
+    with pytest.raises(ConfigError, match="step: "):
+        simulate(system, *(array[0] for array in given), step, STEPS)
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"x": -1},
+        {"thrust_command": -1},
+        {"effort": 1},
+        {"states": -3},
+        {"rates": 1},
+    ],
+    ids=lambda change: next(iter(change)),
+)
+def test_the_integrator_refuses_tables_that_do_not_fit(change):
+    system = system_of(3)
+    x, thrust, effort = (array[0] for array in random_starts(system, 3, 1))
+    tables = {"states": np.empty((5, len(x))), "rates": np.empty((5, len(x)))}
+    arrays = {"x": x, "thrust_command": thrust, "effort": effort, **tables}
+    for name, by in change.items():
+        shape = arrays[name].shape
+        arrays[name] = np.zeros((*shape[:-1], shape[-1] + by))
+    with pytest.raises(ValueError, match="need"):
+        advance(system, step=STEP, scratch=make_scratch(system), **arrays)
 
 
 def test_a_current_of_two_numbers_and_steps_backwards_are_refused():

@@ -1,8 +1,7 @@
 """Vehicle, kinematics, dynamics, thrusters, sensors and plant of the vehicle-manipulator system."""
 
 from uvms_dynamics import compile_cache  # first: it says where numba keeps what it compiles
-from uvms_dynamics.batch import advance_batch
-from uvms_dynamics.integrator import System
+from uvms_dynamics.integrator import System, make_state, make_system
 from uvms_dynamics.kernels import (
     coupling_wrench,
     end_effector,
@@ -29,6 +28,7 @@ from uvms_dynamics.rotations import (
     rpy_to_quat,
     skew,
 )
+from uvms_dynamics.simulation import advance_batch, simulate
 from uvms_dynamics.thrusters import build_thrusters, configuration_matrix, thruster_matrix
 from uvms_dynamics.vehicle import Vehicle, dump_vehicle, load_vehicle
 
@@ -55,6 +55,8 @@ __all__ = [
     "inverse_dynamics",
     "joint_passive_torque",
     "load_vehicle",
+    "make_state",
+    "make_system",
     "mass_matrix",
     "matrix_to_quat",
     "quat_conjugate",
@@ -66,6 +68,7 @@ __all__ = [
     "restoring_wrench",
     "rotation_vector_to_quat",
     "rpy_to_quat",
+    "simulate",
     "skew",
     "thruster_matrix",
 ]

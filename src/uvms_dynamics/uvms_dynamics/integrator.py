@@ -5,6 +5,7 @@ to the water in the body frame, q (n,), q_dot (n,), thrust (m,). The current is 
 uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c.
 """
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -21,9 +22,10 @@ from uvms_dynamics.kernels.motion import (
 )
 from uvms_dynamics.kernels.primitives import root
 from uvms_dynamics.kernels.spatial import load6, plus, six, store6
-from uvms_dynamics.model import Model
+from uvms_dynamics.model import Model, build_model
 from uvms_dynamics.signals import Array
-from uvms_dynamics.thrusters import Thrusters, thrust_rate
+from uvms_dynamics.thrusters import Thrusters, build_thrusters, thrust_rate
+from uvms_dynamics.vehicle import Vehicle
 
 POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
@@ -56,16 +58,47 @@ def state_size(system: System) -> int:
     return int(JOINTS + 2 * system.model[HULL, N_JOINTS]) + len(system.thrusters)
 
 
+def make_system(vehicle: Vehicle, current: Sequence[float] = (0.0, 0.0, 0.0)) -> System:
+    """The system of a vehicle in a current (3,), m/s in the world."""
+    return System(build_model(vehicle), build_thrusters(vehicle), np.array(current, dtype=float))
+
+
+def make_state(
+    q: Sequence[float],
+    m: int,
+    *,
+    position: Sequence[float] = (0.0, 0.0, 0.0),
+    quat: Sequence[float] = (0.0, 0.0, 0.0, 1.0),
+    nu_r: Sequence[float] = (0.0,) * 6,
+    q_dot: Sequence[float] | None = None,
+) -> Array:
+    """State (13 + 2n + m,) with joint angles q (n,), rad, and m thrusters that are off.
+
+    position (3,) m and unit quaternion (x, y, z, w) in the world, nu_r (6,) relative to the water,
+    body frame, q_dot (n,) rad/s; level and at rest where nothing is said.
+    """
+    rates = np.zeros(len(q)) if q_dot is None else q_dot
+    return np.concatenate([position, quat, nu_r, q, rates, np.zeros(m)])
+
+
 @kernel
 def advance(system, x, thrust_command, effort, step, scratch, states, rates):
     """Integrate by classical Runge-Kutta steps of `step` s under constant commands.
 
     x (nx,) becomes the state at the end. Row k of states (steps+1, nx) is the state after k steps
     and row k of rates its derivative under these commands: thrust (m,) N, joint torque (n,) N m.
+    What `simulate` is made of. Raises ValueError for arrays that do not fit.
     """
     model, thrusters, current = system
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
     work, stage, trial = scratch
+    size = JOINTS + 2 * n + m
+    if n != np.int64(model[HULL, N_JOINTS]) or m != thrusters.shape[0] or current.shape[0] != 3:
+        raise ValueError("effort needs a value a joint, thrust_command a thruster, current three")
+    if not (x.shape[0] == trial.shape[0] == states.shape[1] == rates.shape[1] == size):
+        raise ValueError("x, scratch and the rows of states and rates need 13 + 2n + m values")
+    if rates.shape[0] != states.shape[0] or not step >= 0.0:
+        raise ValueError("states and rates need as many rows, and step must be >= 0")
     for s in range(last + 1):
         derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, stage, FIRST)
         _record(x, stage, states, rates, s)

@@ -8,10 +8,10 @@ from uvms_dynamics.signals import Array
 from uvms_dynamics.vehicle import Vehicle
 
 Thrusters = Array
-"""Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, time constant and
-slew limit."""
+"""Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, 1 / time
+constant, slew limit."""
 
-LIMIT, TIME_CONSTANT, SLEW = np.arange(6, 9)
+LIMIT, PER_TIME_CONSTANT, SLEW = np.arange(6, 9)
 
 
 def configuration_matrix(positions: Array, directions: Array) -> Array:
@@ -34,7 +34,7 @@ def thruster_matrix(vehicle: Vehicle) -> Array:
 def build_thrusters(vehicle: Vehicle) -> Thrusters:
     """Thruster tables of a vehicle."""
     parts = vehicle.thrusters
-    drives = [[part.limit_n, part.time_constant_s, part.slew_limit_n_s] for part in parts]
+    drives = [[part.limit_n, 1.0 / part.time_constant_s, part.slew_limit_n_s] for part in parts]
     return np.hstack([thruster_matrix(vehicle).T, drives])
 
 
@@ -43,4 +43,4 @@ def thrust_rate(thrusters, i, thrust, command):
     """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
     limit, slew = thrusters[i, LIMIT], thrusters[i, SLEW]
     wanted = bounded(command, limit)
-    return bounded((wanted - thrust) / thrusters[i, TIME_CONSTANT], slew)
+    return bounded((wanted - thrust) * thrusters[i, PER_TIME_CONSTANT], slew)

@@ -24,7 +24,8 @@ PLACE = np.int64(25)  # 3: joint frame's origin in the parent's
 COS_TWIST, SIN_TWIST = np.int64(28), np.int64(29)  # Rx(twist) comes before the joint's Rz
 OFFSET = np.int64(30)  # added to the joint angle
 ROTOR = np.int64(31)  # rotor inertia
-VISCOUS, COULOMB, WIDTH = np.arange(32, 35, dtype=np.int64)  # friction
+VISCOUS, COULOMB = np.int64(32), np.int64(33)  # friction
+PER_WIDTH = np.int64(34)  # 1 / the rate at which sliding friction sets in
 LOWER, UPPER, STIFFNESS, DISSIPATION = np.arange(35, 39, dtype=np.int64)  # end stops
 EFFORT = np.int64(39)  # greatest torque
 DRAG_BEGIN, DRAG_END = np.int64(40), np.int64(41)  # its drag cylinders
