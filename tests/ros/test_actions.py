@@ -23,11 +23,15 @@ from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds, to_second
 def running(folder, duration_s: float, goal) -> Iterator[tuple[Spinner, Conductor]]:
     """The composed graph, led up to the point where time goes."""
     scenario = load_scenario("manipulation", duration_s=duration_s)
-    file = vehicle_file(folder, scenario.load_vehicle())
+    vehicle = scenario.load_vehicle()
+    file = vehicle_file(folder, vehicle)
     parameters = node_parameters(scenario, file, Pace.parse("lockstep"))
     makers = [lambda node=node, own=own: make_node(node, own) for node, own in parameters.items()]
-    write = lambda *message: None  # noqa: E731
-    with graph_of(lambda: Conductor(write, lambda: None), *makers) as (spinner, (conductor, *_)):
+
+    def lead() -> Conductor:
+        return Conductor(lambda *message: None, lambda: None, vehicle.joint_names)
+
+    with graph_of(lead, *makers) as (spinner, (conductor, *_)):
         conductor.lead(spinner, goal)
         yield spinner, conductor
 

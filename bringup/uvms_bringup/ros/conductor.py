@@ -1,7 +1,7 @@
 """The conductor of a run: waits for the nodes, sends the goal, starts time, watches, records."""
 
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.action import ActionClient
@@ -34,10 +34,19 @@ LOOP_END = (
 
 
 class Conductor(Node):
-    """Leads a run from the first tick to the last and hands every message to `write`."""
+    """Leads a run from the first tick to the last and hands every message to `write`.
 
-    def __init__(self, write: Write, watch: Callable[[], None], **options: Any) -> None:
+    Args:
+        write: takes every message, as `Recorder` says.
+        watch: called while waiting; raises where the run cannot go on.
+        joint_names: in the vehicle's order, for goals that name the joints.
+    """
+
+    def __init__(
+        self, write: Write, watch: Callable[[], None], joint_names: Sequence[str], **options: Any
+    ) -> None:
         super().__init__("conductor", **options)
+        self._joint_names = joint_names
         self._recorder = Recorder(self, write)
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
@@ -107,7 +116,7 @@ class Conductor(Node):
         action = next(item for item in topics.ACTIONS if isinstance(goal, item.goal))
         cls = action_class(action)
         self._client = ActionClient(self, cls, action.name)
-        message = to_ros(cls.Goal, to_message(action, goal))
+        message = to_ros(cls.Goal, to_message(action, goal, self._joint_names))
         self._await(
             spinner,
             self._client.server_is_ready,

@@ -49,8 +49,9 @@ def run_graph(
     start(["uvms"])
     nodes = _composed if composed else _separate
     with nodes(parameters, folder, values) as (inside, watch):
-        conductor = Conductor(write, watch)
-        conductor.broadcast(scenario.load_vehicle(), pace.name == "lockstep")
+        vehicle = scenario.load_vehicle()
+        conductor = Conductor(write, watch, vehicle.joint_names)
+        conductor.broadcast(vehicle, pace.name == "lockstep")
         spinner = Spinner([conductor, *inside])
         try:
             conductor.lead(spinner, goal)
