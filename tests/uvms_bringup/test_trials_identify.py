@@ -11,10 +11,11 @@ from uvms_bringup.cli import main
 from uvms_bringup.errors import TrialError
 from uvms_bringup.trials import identify as identify_module
 from uvms_bringup.trials.fit import fit, group_of
-from uvms_bringup.trials.identify import courses_of, identify, report
+from uvms_bringup.trials.identify import Identified, courses_of, identify, report
 from uvms_bringup.trials.parameters import CANDIDATES, changed, present, value_at
-from uvms_bringup.trials.predict import make_course
+from uvms_bringup.trials.predict import drive_model, dynamic, make_course
 from uvms_bringup.trials.rewrite import rewritten
+from uvms_bringup.trials.score import scores
 from uvms_dynamics import load_vehicle
 from uvms_dynamics.vehicle import vehicle_from_data
 
@@ -96,6 +97,37 @@ def test_known_constants_are_found_again(data, made):
     assert found.fit.rms_deg < 0.1
 
 
+def test_the_report_says_how_many_motions_the_errors_rest_on(data, made):
+    courses = [make_course(trial) for trial in made[1]]
+    few, many = (
+        fit(data, part, chosen(data, *STATIC), precision=1e-3) for part in (courses[:4], courses)
+    )
+    assert (few.groups, many.groups) == (4, 8)
+    text = report(Identified(data, few))
+    assert "jackknife over 4 motions" in text
+    assert "warning: 4 motions are too few for these errors" in text
+    assert "warning" not in report(Identified(data, many))
+    rmse = [[s.rmse for s in row] for row in predicted_scores(data, many, courses)]
+    np.testing.assert_allclose(many.median_deg, np.median(rmse, axis=0), rtol=1e-6)
+    assert many.rms_deg == pytest.approx(np.sqrt(np.mean(np.square(rmse))), rel=1e-6)
+
+
+def predicted_scores(data, found, courses):
+    paths = [p.path for p in found.parameters]
+    new = changed(data, dict(zip(paths, map(float, found.values), strict=True)))
+    drive = drive_model(vehicle_from_data(new))
+    return [scores(each.trial, dynamic(each, *drive).tilt) for each in courses]
+
+
+def test_the_vehicle_file_is_not_written_over(tmp_path, capsys):
+    mine = tmp_path / "mine.yaml"
+    mine.write_text(VEHICLE.read_text(encoding="utf-8"), encoding="utf-8")
+    other = tmp_path / "sub" / ".." / "mine.yaml"
+    (tmp_path / "sub").mkdir()
+    assert main(["identify", str(DATA), "--vehicle", str(mine), "--output", str(other)]) == 2
+    assert f"--output {other} is the vehicle file itself" in capsys.readouterr().err
+
+
 def test_an_arm_at_rest_shows_little(data):
     """In one pose of the arm, its heading and the static moment are not to be told apart."""
     resting = [course for course in courses_of(str(DATA)) if "baseline" in course.trial.name]
@@ -131,7 +163,7 @@ class TestVehicleFile:
         data["hull"]["volume_m3"] = "spheroid"
         parameters, skipped = present(data)
         assert skipped["volume (net buoyancy)"].startswith("hull.volume_m3 is the word `spheroid`")
-        assert skipped["trim by depth, x"].startswith("the vehicle file has no tether")
+        assert skipped["pitch moment by depth"].startswith("the vehicle file has no tether")
         assert "hull.added_mass.3.3" in {p.path for p in parameters}
 
     def test_only_the_numbers_change(self):

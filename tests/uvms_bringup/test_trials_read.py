@@ -85,3 +85,68 @@ def test_a_folder_of_ones_own(tmp_path):
     assert trial.accepted.all()
     np.testing.assert_allclose(trial.attitude, made.attitude, atol=1e-6)
     np.testing.assert_allclose(trial.alpha, made.alpha, atol=1e-6)
+
+
+class TestUnits:
+    """What the numbers betray; the shipped trials are the ones that must pass."""
+
+    @pytest.fixture
+    def columns(self):
+        file = DATA / "traj026-1.csv"
+        header = file.read_text(encoding="utf-8").splitlines()[0].split(",")
+        return dict(zip(header, np.loadtxt(file, delimiter=",", skiprows=1).T, strict=True))
+
+    @pytest.fixture
+    def notes(self, tmp_path, columns):
+        """Notes on the changed columns, without the file's name."""
+
+        def read(**changed):
+            new = {**columns, **changed}
+            new = {name: values for name, values in new.items() if values is not None}
+            file, told = tmp_path / "mine.csv", []
+            rows = np.column_stack(list(new.values()))
+            np.savetxt(file, rows, delimiter=",", header=",".join(new), comments="")
+            read_trial(file, told.append)
+            return [note.removeprefix(f"note: {file}: ") for note in told]
+
+        return read
+
+    def test_shipped_trials_are_beyond_doubt(self):
+        told = []
+        read_trials(DATA, told.append)
+        assert told == []
+
+    def test_joint_angles_in_degrees(self, notes, columns):
+        with pytest.raises(TrialError, match=r"column q_e: .* are these radians\?"):
+            notes(q_e=np.degrees(columns["q_e"]))
+        assert notes(q_b=columns["q_b"] + 4.0) == []
+
+    def test_tilt_in_radians(self, notes, columns):
+        tilt = {name: np.radians(columns[name]) for name in ("roll", "pitch")}
+        with pytest.raises(TrialError, match="columns roll, pitch: are radians"):
+            notes(**tilt)
+        (note,) = notes(**tilt, qw=None)
+        assert "are they degrees?" in note
+        blank = np.full(len(columns["t"]), np.nan)
+        (note,) = notes(**tilt, qw=blank)
+        assert "are they degrees?" in note
+
+    def test_tilt_that_is_not_the_quaternions(self, notes, columns):
+        (note,) = notes(pitch=columns["pitch"] + 3.0)
+        assert note.startswith("roll and pitch differ from the quaternion beside them by 3 deg")
+        some = np.where(np.arange(len(columns["t"])) < 50, np.nan, columns["qx"])
+        assert notes(qx=some) == []
+
+    def test_holes_in_time(self, notes, columns):
+        t = columns["t"]
+        later = np.where(t > t[100], 0.46, 0.0) + np.where(t > t[150], 0.26, 0.0)
+        (note,) = notes(t=t + later)
+        assert note.startswith(f"no samples for 0.50 s after t = {t[100]:g} s; 1 more of over 0.2")
+
+    def test_a_sensor_with_gaps_is_none(self, tmp_path, lines):
+        lines = [
+            f"{line},{'imu_roll,imu_pitch' if k == 0 else '0.1,'}" for k, line in enumerate(lines)
+        ]
+        file = tmp_path / "mine.csv"
+        file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+        assert read_trial(file).sensor is None

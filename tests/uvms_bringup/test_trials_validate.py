@@ -12,6 +12,7 @@ from uvms_bringup.trials.motion import joint_motion
 from uvms_bringup.trials.predict import drive_model, dynamic, make_course
 from uvms_bringup.trials.read import read_trial
 from uvms_bringup.trials.score import medians, scores
+from uvms_bringup.trials.sensor import sensor_tilts
 from uvms_bringup.trials.validate import DYNAMIC, QUASI_STATIC, outcomes, table
 from uvms_dynamics import load_vehicle, quat_to_matrix
 
@@ -155,4 +156,44 @@ class TestCommand:
 
         file = with_three_joints(tmp_path)
         assert main(["validate", str(DATA), "--vehicle", str(file)]) == 2
-        assert "has 3 joints; the trials' arm has 4" in capsys.readouterr().err
+        told = capsys.readouterr().err
+        assert "has 3 joints: base, shoulder, elbow; the trials' arm has 4: base, shoulder" in told
+        assert main(["validate", str(DATA), "--vehicle", "reference_auv"]) == 2
+        told = capsys.readouterr().err
+        assert "4 joints: swing, shoulder, elbow, wrist; the trials' arm has 4: base" in told
+
+    def test_a_vehicle_that_is_another(self, tmp_path, capsys, vehicle):
+        """Ballast moved: the table's end says that the file does not describe the trials."""
+        write_trial(made_trial(vehicle, 1), tmp_path)
+        other = tmp_path / "other.yaml"
+        text = VEHICLE.read_text(encoding="utf-8")
+        other.write_text(text.replace("cb_m: [0.007608,", "cb_m: [0.037608,"), encoding="utf-8")
+        assert main(["validate", str(tmp_path), "--vehicle", str(other)]) == 0
+        assert "predicts pitch worse than `constant`" in capsys.readouterr().out
+        assert main(["validate", str(tmp_path), "--vehicle", str(VEHICLE)]) == 0
+        told = capsys.readouterr().out
+        assert "worse" not in told
+        assert "no offset: the same after" in told
+        assert "attitude sensor" not in told
+
+
+def test_no_trim_starts_from_the_models_own_rest(vehicle):
+    """With ballast unknown to the file, only the trim keeps the vehicle where it floats."""
+    trial, drive = made_trial(vehicle, 3, arm=False), drive_model(vehicle)
+    tilted = dataclasses.replace(trial, attitude=trial.attitude + [0.0, 1.0, 0.0])
+    held, free = (dynamic(make_course(tilted), *drive, trim) for trim in (True, False))
+    still = tilted.t < 1.0
+    assert np.abs(held.tilt - tilted.tilt)[still].max() < 0.1
+    assert np.abs(free.tilt - tilted.tilt)[still].max() > 0.3
+
+
+def test_the_sensor_in_the_models_place(vehicle):
+    """One offset for all: trials off by 1.2 and 0.8 deg are 0.2 deg off their mean."""
+    first, second = (
+        dataclasses.replace(trial, sensor=trial.tilt + [off, 0.0])
+        for trial, off in ((made_trial(vehicle, 1), 1.2), (made_trial(vehicle, 2), 0.8))
+    )
+    tilts = sensor_tilts([first, second])
+    assert scores(first, tilts[0])[0][:2] == pytest.approx((0.2, 0.0), abs=1e-9)
+    assert scores(second, tilts[1])[0][:2] == pytest.approx((0.2, 0.0), abs=1e-9)
+    assert sensor_tilts([first, made_trial(vehicle, 2)]) is None

@@ -26,6 +26,7 @@ def add_commands(commands: Any) -> None:
     )
     add("--output", metavar="DIR", help="write TRIAL.csv (t,roll,pitch; degrees) and table.txt")
     add("--figures", action="store_true", help="draw the trials into the folder of --output")
+    add("--no-trim", action="store_true", help="without the trim that the first tilt shows")
     add = _command(
         commands,
         "identify",
@@ -33,7 +34,12 @@ def add_commands(commands: Any) -> None:
         "fit what recorded trials determine",
         IDENTIFY,
     )
-    add("--output", metavar="FILE", required=True, help="vehicle file to write")
+    add(
+        "--output",
+        metavar="FILE",
+        required=True,
+        help="vehicle file to write, not that of --vehicle",
+    )
     add(
         "--cross-validate",
         action="store_true",
@@ -63,16 +69,18 @@ def validate(options: argparse.Namespace) -> int:
     if options.figures and options.output is None:
         raise TrialError("--figures needs --output DIR, the folder to draw them into")
     vehicle = str(vehicle_path(options.vehicle))
-    print(run(options.trials, vehicle, options.output, options.figures, _tell))
+    trim = not options.no_trim
+    print(run(options.trials, vehicle, options.output, options.figures, _tell, trim))
     return 0
 
 
 def identify(options: argparse.Namespace) -> int:
     """`uvms identify`."""
     from uvms_bringup.trials.cross_validate import cross_validated
-    from uvms_bringup.trials.identify import identify_file, report, write
+    from uvms_bringup.trials.identify import check_output, identify_file, report, write
 
     vehicle = str(vehicle_path(options.vehicle))
+    check_output(vehicle, options.output)
     found, courses = identify_file(options.trials, vehicle, _tell)
     print(report(found))
     print(f"written: {write(found, vehicle, options.output)}", flush=True)

@@ -16,6 +16,9 @@ FLIP = np.array([1.0, -1.0, -1.0])
 SURFACE_Z_M = 1.29
 """Height of the vehicle at the surface in the trials' world (README of the data)."""
 
+JOINTS = ("base", "shoulder", "elbow", "wrist")
+"""The arm's joints, whose angles are the columns q_e, q_d, q_c, q_b."""
+
 JOINT_ZERO_RAD = np.array([3.07, 0.0, 0.0, 2.879])
 """Measured axes e, d, c, b at joint angle zero of base, shoulder, elbow and wrist."""
 

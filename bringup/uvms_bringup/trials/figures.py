@@ -20,7 +20,7 @@ _LOOKS: dict[str, dict[str, Any]] = {
     "dynamic model": {"color": style.COLORS[0], "linewidth": 1.3, "zorder": 3},
     "quasi-static": {"color": style.COLORS[4], "linewidth": 0.9, "zorder": 2},
 }
-_MARKS = {"dynamic model": "o", "quasi-static": "s", "constant": "x"}
+_MARKS = {"dynamic model": "o", "quasi-static": "s", "constant": "x", "attitude sensor": "+"}
 
 
 def draw(found: list[Outcome], folder: Path) -> list[Path]:

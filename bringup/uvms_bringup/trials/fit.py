@@ -44,7 +44,9 @@ class Fit:
     values: Array  # (p,)
     errors: Array  # (p,) standard errors, jackknife over groups of trials
     correlation: Array  # (p, p) of the errors, from the slopes of the residuals
-    rms_deg: float  # of roll and pitch, trials weighted alike
+    rms_deg: float  # of roll and pitch over all samples, trials weighted alike
+    median_deg: tuple[float, float]  # of the trials' RMSE, roll and pitch
+    groups: int  # of trials, left out in turn for the errors
 
 
 def group_of(name: str) -> str:
@@ -84,12 +86,21 @@ def fit(
         gtol=1e-12,
         max_nfev=40,
     )
-    rows = [len(r) for r in _residuals(data, courses, parameters, found.x * scale)]
+    parts = _residuals(data, courses, parameters, found.x * scale)
+    rows = [len(r) for r in parts]
     felt = sum(rows)
     jacobian, residual = slopes(found.x)[:felt], residuals(found.x)[:felt]
     errors = scale * _jackknife(jacobian, residual, rows, courses)
-    rms = _rms(data, courses, parameters, found.x * scale)
-    return Fit(parameters, found.x * scale, errors, _correlation(jacobian), rms)
+    rmse = np.sqrt([np.sum(r.reshape(-1, 3)[:, :2] ** 2, axis=0) for r in parts])
+    return Fit(
+        parameters,
+        found.x * scale,
+        errors,
+        _correlation(jacobian),
+        rms_deg=float(np.sqrt(np.mean(rmse**2))),
+        median_deg=(float(np.median(rmse[:, 0])), float(np.median(rmse[:, 1]))),
+        groups=len(set(_groups([course.trial.name for course in courses]))),
+    )
 
 
 def _residuals(

@@ -10,7 +10,7 @@ import numpy as np
 from uvms_bringup.errors import TrialError
 from uvms_bringup.trials.fit import PRECISION, Fit, fit
 from uvms_bringup.trials.parameters import CANDIDATES, Parameter, present, value_at
-from uvms_bringup.trials.predict import Course, make_course
+from uvms_bringup.trials.predict import Course, drive_model, make_course
 from uvms_bringup.trials.read import read_trials
 from uvms_bringup.trials.rewrite import rewritten
 from uvms_dynamics.errors import VehicleFileError
@@ -19,6 +19,9 @@ from uvms_dynamics.yaml_text import read_yaml
 
 SIGNIFICANCE = 2.0
 """Standard errors by which a thing that may be absent must differ from nothing."""
+
+FEW_MOTIONS = 5
+"""Motions below which the scatter of fits without one of them is no measure of the error."""
 
 ROUGH = 1e-3
 """Precision of a fit that is to show only what is not determined."""
@@ -107,20 +110,46 @@ def report(found: Identified) -> str:
         lines.append(line)
     lines += [f"not fitted: {name}: {reason}. The file's value stays."
               for name, reason in found.refused.items()]  # fmt: skip
-    lines.append(f"rms of roll and pitch: {found.fit.rms_deg:.3f} deg")
-    return "\n".join(lines)
+    return "\n".join([*lines, *_footing(found.fit)])
 
 
-def courses_of(folder: str) -> list[Course]:
+def _footing(fit: Fit) -> list[str]:
+    """How well the model follows the trials, and how much the standard errors rest on."""
+    roll, pitch = fit.median_deg
+    lines = [
+        f"root mean square of roll and pitch over all samples, trials weighted alike:"
+        f" {fit.rms_deg:.3f} deg",
+        f"median of the trials' RMSE: roll {roll:.3f} deg, pitch {pitch:.3f} deg",
+        f"standard errors: jackknife over {fit.groups} motions (repeats NAME-0, NAME-1 are one;"
+        " trials, if there are fewer than 3 motions)",
+    ]
+    if fit.groups < FEW_MOTIONS:
+        lines.append(
+            f"warning: {fit.groups} motions are too few for these errors: what a constant is off by"
+            f" may be many times its std error. Record at least {FEW_MOTIONS}, all different"
+        )
+    return lines
+
+
+def courses_of(folder: str, tell: Tell = lambda line: None) -> list[Course]:
     """The folder's trials, ready to be driven."""
-    return [make_course(trial) for trial in read_trials(folder)]
+    return [make_course(trial) for trial in read_trials(folder, tell)]
+
+
+def check_output(vehicle: str, output: str) -> None:
+    """Raise TrialError if the vehicle file itself would be written over."""
+    if Path(output).resolve() == Path(vehicle).resolve():
+        raise TrialError(
+            f"--output {output} is the vehicle file itself; name another file, then compare the two"
+        )
 
 
 def identify_file(trials: str, vehicle: str, tell: Tell) -> tuple[Identified, list[Course]]:
     """Identify the constants of a vehicle file from a folder of trials."""
     data = read_yaml(Path(vehicle), vehicle, VehicleFileError)
-    vehicle_from_data(data, vehicle)  # its errors name the file and come before the work
-    courses = courses_of(trials)
+    described = vehicle_from_data(data, vehicle)  # its errors name the file, before the work
+    courses = courses_of(trials, tell)
+    drive_model(described)  # refuses another arm
     return identify(data, courses, tell), courses
 
 

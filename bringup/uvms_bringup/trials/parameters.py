@@ -20,14 +20,30 @@ class Parameter:
     may_be_absent: bool = False  # 0 means none of it, so it must be shown to differ from 0
 
 
+_BY_DEPTH = "N m per m"
+
 CANDIDATES = (
     Parameter("static moment x, as CB", "hull.cb_m.0", "m", 1e-3, 1e-3),
     Parameter("static moment y, as CB", "hull.cb_m.1", "m", 1e-3, 1e-3),
     Parameter("static moment z, as CB", "hull.cb_m.2", "m", 1e-3, 1e-3),
     Parameter("volume (net buoyancy)", "hull.volume_m3", "m^3", 1e-5, 1e-5, 1e-6),
     Parameter("heading of the arm's base", "arm.base.rpy_deg.2", "deg", 1.0, 1.5),
-    Parameter("trim by depth, x", "tether.moment_per_m_nm.0", "N", 0.03, 0.03, may_be_absent=True),
-    Parameter("trim by depth, y", "tether.moment_per_m_nm.1", "N", 0.03, 0.03, may_be_absent=True),
+    Parameter(
+        "pitch moment by depth",
+        "tether.moment_per_m_nm.0",
+        _BY_DEPTH,
+        0.03,
+        0.03,
+        may_be_absent=True,
+    ),
+    Parameter(
+        "roll moment by depth",
+        "tether.moment_per_m_nm.1",
+        _BY_DEPTH,
+        0.03,
+        0.03,
+        may_be_absent=True,
+    ),
     Parameter("roll damping", "hull.linear_damping.3", "N m s", 0.1, 0.1, 0.0),
     Parameter("pitch damping", "hull.linear_damping.4", "N m s", 0.1, 0.1, 0.0),
     Parameter("added roll inertia", "hull.added_mass.3", "kg m^2", 0.1, 0.1, 0.0),

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from uvms_bringup.errors import TrialError
 from uvms_bringup.trials.convention import (
+    JOINTS,
     down_direction,
     joint_angles,
     position_down,
@@ -49,11 +50,12 @@ def make_course(trial: Trial) -> Course:
 
 
 def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
-    """Tables of the vehicle and its tether's load; raises TrialError unless it has four joints."""
-    if vehicle.n_joints != 4:
+    """Tables of the vehicle and its tether's load; TrialError unless its joints are the trials'."""
+    names = tuple(joint.name for joint in vehicle.arm.joints)
+    if names != JOINTS:
         raise TrialError(
-            f"vehicle {vehicle.name} has {vehicle.n_joints} joints; the trials' arm has 4: base,"
-            " shoulder, elbow, wrist"
+            f"vehicle {vehicle.name} has {len(names)} joints: {', '.join(names) or 'none'}; the"
+            f" trials' arm has {len(JOINTS)}: {', '.join(JOINTS)} (columns q_e, q_d, q_c, q_b)"
         )
     tether = vehicle.tether
     if tether is None:
@@ -66,9 +68,12 @@ def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
     return build_model(vehicle), load
 
 
-def dynamic(course: Course, model: Model, load: Load) -> Prediction:
-    """Integrate from the measured initial state, driven by the measured joints."""
-    load = trimmed(course, model, load)
+def dynamic(course: Course, model: Model, load: Load, trim: bool = True) -> Prediction:
+    """Integrate from the measured initial state, driven by the measured joints.
+
+    trim: with the trim of the day (see `trimmed`).
+    """
+    load = trimmed(course, model, load) if trim else load
     states = float_freely(model, course.start.state, course.motion, load)[course.samples]
     down = np.array([quat_to_matrix(quaternion)[2] for quaternion in states[:, 3:7]])
     return Prediction(tilt_deg(down), states[:, 2])

@@ -9,10 +9,23 @@ from uvms_bringup.trials.read import Trial
 from uvms_bringup.trials.score import AXES, Score, medians
 from uvms_dynamics.signals import Array
 
+SENSOR = "attitude sensor"
+"""Row of the vehicle's own sensor, where the trials have its columns."""
+
 Scores = dict[str, list[tuple[Score, Score]]]
 """Of each model, the scores of each trial."""
 
 _HEAD = f"{'trial':<18}{'axis':<7}{'model':<16}{'RMSE deg':>9}{'no offset':>11}{'correlation':>13}"
+
+
+LEGEND = """\
+RMSE: root mean square of predicted less measured, over the samples with moc_ok = 1.
+no offset: the same after each trial's mean error is taken out.
+correlation: of predicted with measured; - where one of them does not move."""
+
+SENSOR_LEGEND = """\
+attitude sensor: the vehicle's own (imu_roll, imu_pitch) in a model's place, one offset for all
+trials taken out; `no offset`: one for each trial."""
 
 
 def table_text(names: list[str], table: Scores) -> str:
@@ -22,6 +35,9 @@ def table_text(names: list[str], table: Scores) -> str:
         lines += _rows(name, {model: rows[number] for model, rows in table.items()})
     lines.append("-" * len(_HEAD))
     lines += _rows(f"median of {len(names)}", {m: medians(rows) for m, rows in table.items()})
+    lines += ["", LEGEND]
+    if SENSOR in table:
+        lines.append(SENSOR_LEGEND)
     return "\n".join(lines)
 
 

@@ -14,8 +14,9 @@ from uvms_bringup.trials.predict import (
     quasi_static,
 )
 from uvms_bringup.trials.read import Trial, read_trials
-from uvms_bringup.trials.score import scores
-from uvms_bringup.trials.table import Scores, table_text, write_csv
+from uvms_bringup.trials.score import AXES, medians, scores
+from uvms_bringup.trials.sensor import sensor_tilts
+from uvms_bringup.trials.table import SENSOR, Scores, table_text, write_csv
 from uvms_dynamics import Vehicle, load_vehicle
 
 DYNAMIC, QUASI_STATIC, CONSTANT = "dynamic model", "quasi-static", "constant"
@@ -29,12 +30,12 @@ class Outcome:
     said: dict[str, Prediction]
 
 
-def outcomes(vehicle: Vehicle, trials: list[Trial]) -> Iterator[Outcome]:
+def outcomes(vehicle: Vehicle, trials: list[Trial], trim: bool = True) -> Iterator[Outcome]:
     """Every trial in turn, predicted by the full model and by the plain ones."""
     model, load = drive_model(vehicle)
     for trial in trials:
         course: Course = make_course(trial)
-        moving = dynamic(course, model, load)
+        moving = dynamic(course, model, load, trim)
         still = quasi_static(course, model, load, moving.depth)
         yield Outcome(trial, {DYNAMIC: moving, QUASI_STATIC: still, CONSTANT: constant(course)})
 
@@ -42,7 +43,22 @@ def outcomes(vehicle: Vehicle, trials: list[Trial]) -> Iterator[Outcome]:
 def table(found: list[Outcome]) -> Scores:
     """Scores by model, over the trials."""
     models = found[0].said
-    return {m: [scores(each.trial, each.said[m].tilt) for each in found] for m in models}
+    rows = {m: [scores(each.trial, each.said[m].tilt) for each in found] for m in models}
+    if (tilts := sensor_tilts([each.trial for each in found])) is not None:
+        pairs = zip(found, tilts, strict=True)
+        rows[SENSOR] = [scores(each.trial, tilt) for each, tilt in pairs]
+    return rows
+
+
+def remarks(rows: Scores) -> list[str]:
+    """What the reader should conclude from the medians, if anything."""
+    model, still = medians(rows[DYNAMIC]), medians(rows[CONSTANT])
+    return [
+        f"The dynamic model predicts {axis} worse than `constant` does ({model[k].rmse:.2f} against"
+        f" {still[k].rmse:.2f} deg): this vehicle file does not describe these trials."
+        for k, axis in enumerate(AXES)
+        if model[k].rmse > still[k].rmse
+    ]
 
 
 def validate(
@@ -51,12 +67,15 @@ def validate(
     output: str | None,
     figures: bool,
     tell: Callable[[str], None] = lambda line: None,
+    trim: bool = True,
 ) -> str:
     """Predict, write what was asked for, and return the table."""
-    described, recorded = load_vehicle(vehicle), read_trials(trials)
+    described, recorded = load_vehicle(vehicle), read_trials(trials, tell)
     tell(f"{len(recorded)} trials of {described.name} (some 20 s more where kernels compile first)")
-    found = list(outcomes(described, recorded))
-    text = table_text([each.trial.name for each in found], table(found))
+    found = list(outcomes(described, recorded, trim))
+    rows = table(found)
+    text = table_text([each.trial.name for each in found], rows)
+    text = "\n".join([text, *remarks(rows)])
     if output is None:
         return text
     folder = Path(output)
