@@ -5,6 +5,7 @@ import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,7 +25,7 @@ from uvms_dynamics.panel_method import (
     shape_body,
     vehicle_body,
 )
-from uvms_dynamics.panel_method.bodies import MOST_HALVED, PANELS, SEA_WATER
+from uvms_dynamics.panel_method.bodies import FILE_ROW, MOST_HALVED, PANELS, SEA_WATER
 from uvms_dynamics.panel_method.panels import LONG, longest_edge, mean_edge
 from uvms_dynamics.panel_method.solids import WORDS
 from uvms_dynamics.panel_method.solver import memory_needed
@@ -120,8 +121,11 @@ def _body(options: argparse.Namespace) -> Body:
     if is_shape or ":" in name:
         _refuse(of_files, f"shape {name}")
         return shape_body(name, pose, density, options.panels)
-    if name == "hull":
-        raise PanelMethodError("'hull' is a part of a vehicle file: say which with --vehicle FILE")
+    if not Path(name).suffix and not Path(name).exists():
+        raise PanelMethodError(
+            f"{name!r}: no such mesh file or shape; if it is a part of a vehicle file, say which"
+            " with --vehicle FILE"
+        )
     return mesh_body(name, pose, density, options.panels, options.scale, options.flip)
 
 
@@ -159,7 +163,26 @@ def _report(body: Body, found: AddedMassEstimate) -> list[str]:
     for name, matrix in body.rows.items():
         short, _, kind = name.partition(",")
         lines += [_row(short, np.diag(matrix)) + kind]
-    return [*lines, "", *_remarks(found), *_long_edges(body)]
+    return [*lines, "", *_remarks(found), *_frame(body), *_roll(body, found), *_long_edges(body)]
+
+
+def _frame(body: Body) -> list[str]:
+    """A doubt whether a mesh was given in the body frame."""
+    points = body.levels[-1].vertices
+    if not body.is_mesh or ((points.min(axis=0) <= 0.0) & (points.max(axis=0) >= 0.0)).all():
+        return []
+    return ["the frame's origin lies outside the body: --about X,Y,Z?"]
+
+
+def _roll(body: Body, found: AddedMassEstimate) -> list[str]:
+    """What the file has about the axis and the bare shape has not."""
+    now = body.rows.get(FILE_ROW, np.zeros((6, 6)))[3, 3]
+    if found.matrix[3, 3] > 1e-3 * now or now == 0.0:
+        return []
+    return [
+        f"K of the bare shape is 0: the file's {now:.5g} kg m^2 (fins and the like) would be lost;",
+        "to keep it, write it into the fourth row",
+    ]
 
 
 def _long_edges(body: Body) -> list[str]:
@@ -198,8 +221,9 @@ def _gigabytes(count: int) -> str:
 
 
 def _row(name: str, values: Array) -> str:
-    size = float(np.abs(values).max())
-    return f"{name:>20}" + "".join(f"{value:11.5g}" for value in _clean(values, size))
+    size = float(np.nanmax(np.abs(values)))
+    texts = ["-" if np.isnan(value) else f"{value:.5g}" for value in _clean(values, size)]
+    return f"{name:>20}" + "".join(f"{text:>11}" for text in texts)
 
 
 def _clean(values: Array, size: float) -> Array:

@@ -62,6 +62,9 @@ def test_mesh_in_millimetres_with_z_upwards(said, error):
     comments, matrix = said("ball.stl", *frame, "--panels", "400")
     assert "its centre -0.1, 0, -0.2 m" in comments
     assert "convergence: extrapolation changes" in comments
+    assert "--about X,Y,Z?" not in comments
+    elsewhere, _ = said("ball.stl", "--scale", "0.001", "--panels", "400")
+    assert "the frame's origin lies outside the body: --about X,Y,Z?" in elsewhere
     m = 0.5 * 1000.0 * 4.0 / 3.0 * np.pi * 0.25**3
     assert np.diag(matrix)[:3] == pytest.approx([m] * 3, rel=0.05)  # inscribed: 4 % less volume
     assert matrix[0, 4] == pytest.approx(-0.2 * m, rel=0.05)
@@ -84,17 +87,24 @@ def test_parts_of_a_vehicle_file(said, error):
     assert "vehicle file now" in comments
     assert 0.8 * now[0, 0] < matrix[0, 0] < 0.95 * now[0, 0]  # round ends, water escapes
     assert matrix[0, 4] == pytest.approx(0.19 * matrix[0, 0], rel=1e-3)
+    strips = next(line for line in comments.splitlines() if "strip theory" in line)
+    assert strips.split()[5] == "-"  # X and Y across, Z along
+    assert strips.endswith("an upper bound across the axis")
+    comments, _ = said("hull", "--vehicle", file, "--panels", "400")
+    assert "K of the bare shape is 0: the file's 0.80573 kg m^2" in comments
     assert "it has hull, swing_link, upper_arm" in error("rudder", "--vehicle", file)
     assert "--scale and --about: not for part hull of a vehicle file" in error(
         "hull", "--vehicle", file, "--scale", "1", "--about", "0,0,1"
     )
-    assert "say which with --vehicle FILE" in error("hull")
+    for part in ("hull", "forearm"):
+        assert "say which with --vehicle FILE" in error(part)
 
 
 def test_mistakes_are_named(error):
     assert "hull.stl: there is no such mesh file" in error("hull.stl")
     assert "shape 'ball' is unknown; known are sphere:RADIUS" in error("ball:1")
     assert "--flip: not for shape sphere:1" in error("sphere:1", "--flip")
+    assert "sphere:0: radius 0: must be a length in m" in error("sphere:0")
     assert "9 panels are too few" in error("sphere:1", "--panels", "9")
     assert "density 0: must be a density" in error("sphere:1", "--density", "0")
 

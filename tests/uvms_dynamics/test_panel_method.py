@@ -330,7 +330,7 @@ def test_native_format_of_panel_codes_is_read(tmp_path):
         ("sphere:big", "must be sphere:RADIUS with numbers in m"),
         ("box:1,2", "has 2 numbers; must be box:LENGTH_X,LENGTH_Y,LENGTH_Z"),
         ("cylinder:-1,2", "radius -1: must be a length in m, > 0"),
-        ("sphere:nan", "length_x nan: must be a length in m, > 0"),
+        ("sphere:nan", "radius nan: must be a length in m, > 0"),
     ],
 )
 def test_shapes_that_are_none_are_named(word, text):
@@ -376,7 +376,7 @@ def test_parts_of_a_vehicle_are_found():
     body = vehicle_body(vehicle, "forearm", 400)
     low, high = (getattr(body.levels[0].vertices, end)(axis=0) for end in ("min", "max"))
     np.testing.assert_allclose([low, high], [[-0.04, -0.04, 0.0], [0.04, 0.04, 0.38]], atol=1e-9)
-    strips = body.rows["strip theory, an upper bound"]
+    strips = body.rows["strip theory, an upper bound across the axis"]
     file = np.array(vehicle.arm.links[2].added_mass)
     across = [0, 1, 3, 4, 5]
     np.testing.assert_allclose(

@@ -24,12 +24,16 @@ MOST_HALVED = 8000
 SEA_WATER = 1025.0
 """Density where nothing else is said, kg/m^3."""
 
+FILE_ROW = "vehicle file now"
+"""Row of what a vehicle's file has for the part."""
+
 
 @dataclass(frozen=True)
 class Body:
     """Finenesses of one surface in the body frame, coarse to fine, and what is known beside.
 
-    `rows` holds matrices (6, 6) to compare with, by name; `is_mesh`: the panels are a user's.
+    `rows` holds matrices (6, 6) to compare with, by name; nan on the diagonal is what is not
+    known. `is_mesh`: the panels are a user's.
     """
 
     name: str
@@ -54,8 +58,16 @@ def solid_body(name: str, solid: Solid, pose: Pose, density: float, count: int =
     _check_count(count)
     levels = tuple(solid.panels(count // 4, halvings).in_frame(*pose) for halvings in (0, 1))
     exact = solid.closed_form(density)
-    rows = {} if exact is None else {solid.theory: in_frame(exact, *pose)}
+    rows = {} if exact is None else {solid.theory: _known(in_frame(exact, *pose), solid, pose)}
     return Body(name, levels, density, rows)
+
+
+def _known(matrix: Array, solid: Solid, pose: Pose) -> Array:
+    """The matrix (6, 6) with nan on the diagonal where mass along an open axis would show."""
+    if solid.open_axis:
+        along = np.diag(in_frame(np.diag([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), *pose))
+        matrix = matrix + np.diag(np.where(along > 1e-12, np.nan, 0.0))
+    return matrix
 
 
 def shape_body(text: str, pose: Pose, density: float, count: int = PANELS) -> Body:
@@ -98,7 +110,7 @@ def vehicle_body(vehicle: Vehicle, name: str, count: int = PANELS) -> Body:
             f"{name!r}: the vehicle {vehicle.name} has no such part with a shape (hull.spheroid, or"
             f" the cylinder of a link); it has {choices}"
         )
-    rows = {**body.rows, "vehicle file now": np.array(added_mass)}
+    rows = {**body.rows, FILE_ROW: np.array(added_mass)}
     return Body(name, body.levels, density, rows)
 
 

@@ -19,6 +19,9 @@ class Solid:
     theory: ClassVar[str] = ""
     """Where the closed form comes from; empty where there is none."""
 
+    open_axis: ClassVar[bool] = False
+    """Whether it has nothing to say along the x axis."""
+
     def __post_init__(self) -> None:
         for field in fields(self):
             value = getattr(self, field.name)
@@ -65,7 +68,8 @@ class Cylinder(Solid):
 
     radius: float
     length: float
-    theory = "strip theory, an upper bound"
+    theory = "strip theory, an upper bound across the axis"
+    open_axis = True
 
     def panels(self, count: int, halvings: int = 0) -> Panels:
         """Rings that are finer towards the edges, where the flow is fastest."""
@@ -123,6 +127,9 @@ def parse_solid(text: str) -> Solid:
         raise PanelMethodError(f"{text}: must be {word}:{WORDS[word]} with numbers in m") from None
     if len(sizes) != WORDS[word].count(",") + 1:
         raise PanelMethodError(f"{text}: has {len(sizes)} numbers; must be {word}:{WORDS[word]}")
+    for name, size in zip(WORDS[word].lower().split(","), sizes, strict=True):
+        if not (math.isfinite(size) and size > 0.0):
+            raise PanelMethodError(f"{text}: {name} {size:g}: must be a length in m, > 0")
     if word == "sphere":
         return Ellipsoid(*[2.0 * sizes[0]] * 3)
     if word == "spheroid":

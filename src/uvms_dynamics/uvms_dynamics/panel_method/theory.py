@@ -48,7 +48,7 @@ def _about(squares: Array, alpha: Array) -> float:
 
 
 def slender_cylinder_added_mass(radius: float, length: float, density: float) -> Array:
-    """Strip theory (6, 6) for a cylinder along x about its middle: an upper bound.
+    """Strip theory (6, 6) for a cylinder along x about its middle: an upper bound across it.
 
     rho pi r^2 l across, rho pi r^2 l^3 / 12 in rotation, none along and about the axis: water that
     flows round the ends is left out (Fossen 2011, sec. 6.4).
