@@ -1,12 +1,15 @@
 """The conductor of a run: waits for the nodes, sends the goal, starts time, watches, records."""
 
+import sys
 import time
+import uuid
 from collections.abc import Callable, Sequence
 from typing import Any
 
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
+from unique_identifier_msgs.msg import UUID
 
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.recorder import Recorder, Write
@@ -15,7 +18,8 @@ from uvms_dynamics import diagnostics, topics
 from uvms_dynamics.messages import from_message, to_message
 from uvms_dynamics.ros.convert import action_class, message_class, to_ros
 from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.ros.roll_call import RollCall
+from uvms_dynamics.ros.request import Request
+from uvms_dynamics.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_dynamics.ros.spin import Spinner
 from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
 from uvms_dynamics.topics import Topic
@@ -25,6 +29,8 @@ START_PATIENCE_S = 180.0
 """Wall time for all nodes to come up and find each other; the first start compiles kernels."""
 ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0
+NOTICE_S = 10.0
+"""Wall time of silence after which one is told what is being waited for, again and again."""
 LOOP_END = (
     topics.THRUSTER_COMMAND,
     topics.JOINT_COMMAND,
@@ -85,7 +91,7 @@ class Conductor(Node):
             spinner,
             lambda: topics.THRUSTER_COMMAND.name in self._recorder.newest,
             START_PATIENCE_S,
-            lambda: "the loop did not close at the first tick",
+            lambda: f"the first thruster_command; nothing yet from {', '.join(self._silent())}",
         )
         if goal is not None:
             self.send_goal(spinner, goal)
@@ -108,8 +114,16 @@ class Conductor(Node):
             spinner,
             lambda: not self._roll_call.poll(),
             START_PATIENCE_S,
-            lambda: "; ".join(f"{node}: {lack}" for node, lack in self._roll_call.poll().items()),
+            lambda: _told(self._roll_call.poll()),
         )
+
+    def _silent(self) -> list[str]:
+        newest = self._recorder.newest
+        return [
+            node
+            for node, own in topics.NODES.items()
+            if all(topic.name not in newest for topic in own.outputs)
+        ]
 
     def send_goal(self, spinner: Spinner, goal: PathGoal | JointGoal) -> None:
         """Ask the planner for a goal; RunError with its reason where it is rejected."""
@@ -121,16 +135,22 @@ class Conductor(Node):
             spinner,
             self._client.server_is_ready,
             ANSWER_PATIENCE_S,
-            lambda: f"nobody serves the action {action.name!r}",
+            lambda: f"a server of the action {action.name!r}",
         )
         self._faults.clear()
-        sent = self._client.send_goal_async(message, feedback_callback=self._take_feedback)
-        self._await(
-            spinner, sent.done, ANSWER_PATIENCE_S, lambda: f"no answer from {action.name!r}"
+        goal_id = UUID(
+            uuid=list(uuid.uuid4().bytes)
+        )  # one for all: no second goal where asked again
+        request = Request(
+            lambda: self._client.send_goal_async(message, self._take_feedback, goal_id),
+            self._client.server_is_ready,
         )
-        handle = sent.result()
+        handle = self._answer_to(spinner, request, f"motion_planner: {action.name}")
         if not handle.accepted:
-            raise RunError(f"the planner rejected the goal: {self._reason(spinner)}")
+            reason = self._reason(spinner)
+            # A server refuses an id that it holds already: it took the goal when first asked.
+            if reason or request.times_asked == 1:
+                raise RunError(f"the planner rejected the goal: {reason or 'no reason given'}")
         self.goal_handle = handle
         handle.get_result_async().add_done_callback(self._take_result)
 
@@ -141,24 +161,38 @@ class Conductor(Node):
             if "motion_planner" in self._faults:
                 return self._faults["motion_planner"]
             spinner.spin_once(0.05)
-        return "no reason given"
+        return ""
 
     def _call(self, spinner: Spinner, client: Any, request: Any, name: str) -> None:
-        answer = client.call_async(request)
-        self._await(spinner, answer.done, ANSWER_PATIENCE_S, lambda: f"no answer from {name}")
-        if not answer.result().success:
-            raise RunError(f"{name}: {answer.result().message}")
+        asked = Request(lambda: client.call_async(request), client.service_is_ready)
+        answer = self._answer_to(spinner, asked, name)
+        if not answer.success:
+            raise RunError(f"{name}: {answer.message}")
+
+    def _answer_to(self, spinner: Spinner, request: Request, name: str) -> Any:
+        self._await(
+            spinner,
+            lambda: request.answer() is not None,
+            ANSWER_PATIENCE_S,
+            lambda: f"an answer from {name}",
+        )
+        return request.answer()
 
     def _await(
         self, spinner: Spinner, ready: Callable[[], bool], patience: float, lack: Callable[[], str]
     ) -> None:
-        deadline = time.monotonic() + patience
+        began = time.monotonic()
+        deadline, notice = began + patience, began + NOTICE_S
         while not ready():
             self._watch()
+            if time.monotonic() > notice:
+                notice += NOTICE_S
+                waited = time.monotonic() - began
+                print(f"waiting for: {lack()} ({waited:.0f} s)", file=sys.stderr, flush=True)
             if spinner.done.done():
                 raise RunError("stopped before the run began")
             if time.monotonic() > deadline:
-                raise RunError(f"waited {patience:.0f} s in vain: {lack()}")
+                raise RunError(f"waited {patience:.0f} s in vain for: {lack()}")
             spinner.spin_once(0.05)
 
     def _take_status(self, msg: Any) -> None:
@@ -178,3 +212,9 @@ class Conductor(Node):
         if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
             text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
         return text
+
+
+def _told(lacks: dict[str, str]) -> str:
+    """Who is waited for; a node that is not up is the reason why the others lack its topics."""
+    dumb = {node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER)}
+    return "; ".join(f"{node}: {lack}" for node, lack in (dumb or lacks).items())

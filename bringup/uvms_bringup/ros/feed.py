@@ -29,6 +29,8 @@ from uvms_dynamics.config import validated
 from uvms_dynamics.messages import to_message
 from uvms_dynamics.ros.convert import action_class, message_class, to_ros
 from uvms_dynamics.ros.node import qos_profile
+from uvms_dynamics.ros.request import Request
+from uvms_dynamics.ros.roll_call import RollCall
 from uvms_dynamics.ros.spin import Spinner, start
 from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 
@@ -59,9 +61,8 @@ class Feeder(Node):
             for topic in wanted.inputs
         }
         self._outputs = [self._listen(run, topic) for topic in wanted.outputs]
-        self._ready = self.create_client(Trigger, f"{node}/ready")
-        self._asked: Future | None = None
-        self.lack = "has not come up"
+        self._roll_call = RollCall(self, (node,))
+        self.lack = ""
 
     def _listen(self, run: RunLog, topic: topics.Topic):
         name, qos = topic.resolve(run.namespace), qos_yaml(topic.qos)
@@ -78,14 +79,8 @@ class Feeder(Node):
 
     def connected(self) -> bool:
         """Whether the node and this one have found each other in both directions."""
-        if self._asked is not None and self._asked.done():
-            answer = self._asked.result()
-            self.lack, self._asked = answer.message, None
-            if answer.success:
-                return self._matched()
-        if self._asked is None and self._ready.service_is_ready():
-            self._asked = self._ready.call_async(Trigger.Request())
-        return False
+        self.lack = "; ".join(self._roll_call.poll().values())
+        return not self.lack and self._matched()
 
     def _matched(self) -> bool:
         self.lack = "topics are not yet connected"
@@ -165,12 +160,13 @@ class Feeding:
 
     def _start_plant(self) -> None:
         client = self._feeder.create_client(Trigger, "start")
+        request = Request(lambda: client.call_async(Trigger.Request()), client.service_is_ready)
         deadline = time.monotonic() + START_PATIENCE_S
-        while not client.service_is_ready() and time.monotonic() < deadline:
+        while request.answer() is None:
             self._check()
+            if time.monotonic() > deadline:
+                raise RunError(f"waited {START_PATIENCE_S:.0f} s in vain: the plant did not start")
             self._spinner.spin_for(Future(), 0.02)
-        if not self._await(client.call_async(Trigger.Request()), START_PATIENCE_S):
-            raise RunError(f"waited {START_PATIENCE_S:.0f} s in vain: the plant did not start")
 
     def all_ticks(self, metronome: Metronome, line: ProgressLine) -> int:
         """Feed tick by tick; returns how many were left unanswered."""

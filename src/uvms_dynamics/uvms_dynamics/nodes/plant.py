@@ -193,18 +193,19 @@ class PlantNode(UvmsNode):
         return self._commands[topics.JOINT_COMMAND.name]
 
     def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = not self._running, "already running"
+        response.success, response.message = True, "already running"  # asked again: no fault
         if not self._running:
             response.message = "started"
             self._start()
         return response
 
     def _answer_pause(self, request: SetBool.Request, response: SetBool.Response):
-        self._paused, response.success = request.data, True
+        was_paused, self._paused, response.success = self._paused, request.data, True
         response.message = f"paused at {to_seconds(self._plant.stamp):.2f} s"
         if not request.data:
             response.message = f"going on from {to_seconds(self._plant.stamp):.2f} s"
-            self._resume()
+            if was_paused:  # else time would leap a period
+                self._resume()
         return response
 
     def _resume(self) -> None:
