@@ -31,6 +31,9 @@ ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0
 NOTICE_S = 10.0
 """Wall time of silence after which one is told what is being waited for, again and again."""
+SETTLE_S = 0.3
+"""Wall time after the last answers, for what was published beside them, such as a reference."""
+
 LOOP_END = (
     topics.THRUSTER_COMMAND,
     topics.JOINT_COMMAND,
@@ -104,10 +107,14 @@ class Conductor(Node):
             self._arrival = None
             return False
         self._arrival = self._arrival or time.monotonic()
-        answered = all(newest.get(topic.name, -1) >= end for topic in self._end)
-        return answered or time.monotonic() - self._arrival > END_PATIENCE_S
+        waited = time.monotonic() - self._arrival
+        if all(newest.get(topic.name, -1) >= end for topic in self._end):
+            self._answered = self._answered or time.monotonic()
+            return time.monotonic() - self._answered > SETTLE_S
+        return waited > END_PATIENCE_S
 
     _arrival: float | None = None
+    _answered: float | None = None
 
     def _await_nodes(self, spinner: Spinner) -> None:
         self._await(
