@@ -7,6 +7,7 @@ the newest of the other inputs, so that a late node stops nobody (only an input 
 never had yet is waited for). The gate knows no ROS and no clock.
 """
 
+from abc import ABC, abstractmethod
 from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -16,7 +17,7 @@ DEPTH = 256
 """Samples an input keeps while it waits: 2.5 s of a 100 Hz sensor."""
 
 
-class Input:
+class Input(ABC):
     """One stamped input; the subclasses say when it is complete for a tick."""
 
     def __init__(self) -> None:
@@ -30,9 +31,9 @@ class Input:
         """The newest value at or before the stamp, or None."""
         return next((value for when, value in reversed(self._items) if when <= stamp), None)
 
+    @abstractmethod
     def complete(self, stamp: int) -> bool:
         """Whether all that is due at the stamp has come."""
-        raise NotImplementedError
 
     def known(self, stamp: int) -> bool:
         """Whether there is a value to go on with, be it old."""

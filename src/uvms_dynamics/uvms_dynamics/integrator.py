@@ -138,7 +138,11 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
     """Row k of out: the derivative of the state x under these commands."""
     a, b, c, d = _unit_quaternion(x)
     nu_r = six(x, VELOCITY)
-    _set_pose_rates(current, nu_r, a, b, c, d, out, k)
+    rates = pose_rates(nu_r, a, b, c, d)
+    for i in range(3):  # over ground: the water carries it along
+        out[k, POSITION + i] = rates[i] + current[i]
+    for i in range(3, 7):
+        out[k, POSITION + i] = rates[i]
     for i in range(1, n + 1):
         angle, rate = x[JOINTS + i - 1], x[JOINTS + n + i - 1]
         set_angle(model, work, i, angle)
@@ -164,18 +168,20 @@ def _unit_quaternion(x):
 
 
 @inner
-def _set_pose_rates(current, nu_r, a, b, c, d, out, k):
-    """Row k of out: p_dot = R v_r + v_c and the quaternion's rate 1/2 quat (omega, 0)."""
-    u, v, w, p, q, r = nu_r
+def pose_rates(nu, a, b, c, d):
+    """R v and the quaternion's rate 1/2 quat (omega, 0), seven numbers; quat = (a, b, c, d)."""
+    u, v, w, p, q, r = nu
     # R v = v + 2 e x (e x v + d v), with e the vector part
     t0, t1, t2 = b * w - c * v + d * u, c * u - a * w + d * v, a * v - b * u + d * w
-    out[k, POSITION] = u + 2.0 * (b * t2 - c * t1) + current[0]
-    out[k, POSITION + 1] = v + 2.0 * (c * t0 - a * t2) + current[1]
-    out[k, POSITION + 2] = w + 2.0 * (a * t1 - b * t0) + current[2]
-    out[k, QUATERNION] = 0.5 * (d * p + b * r - c * q)
-    out[k, QUATERNION + 1] = 0.5 * (d * q + c * p - a * r)
-    out[k, QUATERNION + 2] = 0.5 * (d * r + a * q - b * p)
-    out[k, QUATERNION + 3] = -0.5 * (a * p + b * q + c * r)
+    return (
+        u + 2.0 * (b * t2 - c * t1),
+        v + 2.0 * (c * t0 - a * t2),
+        w + 2.0 * (a * t1 - b * t0),
+        0.5 * (d * p + b * r - c * q),
+        0.5 * (d * q + c * p - a * r),
+        0.5 * (d * r + a * q - b * p),
+        -0.5 * (a * p + b * q + c * r),
+    )
 
 
 @inner

@@ -12,8 +12,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uvms_dynamics.integrator import VELOCITY, pose_rates
 from uvms_dynamics.kernels import inverse_dynamics, mass_matrix
 from uvms_dynamics.kernels.jit import kernel
+from uvms_dynamics.kernels.motion import down_in_body
+from uvms_dynamics.kernels.spatial import cross, six
 from uvms_dynamics.model import Model
 from uvms_dynamics.signals import Array
 
@@ -75,13 +78,12 @@ def base_acceleration(model, load, inverse, x, q, q_dot, q_ddot):
     """nu_dot (6,) of the base at the state x (13,); load (4,) is weight and first moment."""
     quat = x[3:7]
     needed = inverse_dynamics(model, quat, x[7:], np.zeros(6), q, q_dot, q_ddot)
-    down = _down(quat)
-    moment = load[1:]
+    down = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    turning = cross((load[1], load[2], load[3]), down)
     tau = -needed[:6]
-    tau[:3] += load[0] * down
-    tau[3] += moment[1] * down[2] - moment[2] * down[1]
-    tau[4] += moment[2] * down[0] - moment[0] * down[2]
-    tau[5] += moment[0] * down[1] - moment[1] * down[0]
+    for i in range(3):
+        tau[i] += load[0] * down[i]
+        tau[3 + i] += turning[i]
     out = np.zeros(6)
     for i in range(6):
         for j in range(6):
@@ -103,7 +105,9 @@ def _integrate(model, loads, scales, inverse, motion, states):
             if k > 0:
                 trial += (h if k == 3 else 0.5 * h) * slope[k - 1]
             trial[3:7] /= np.sqrt(np.sum(trial[3:7] ** 2))
-            _pose_rate(trial, slope[k])
+            rates = pose_rates(six(trial, VELOCITY), trial[3], trial[4], trial[5], trial[6])
+            for i in range(7):
+                slope[k, i] = rates[i]
             at = t + 0.5 * h * ((k + 1) // 2)
             below, faded = trial[2] - scales[0], np.exp(-at / scales[1])
             load = loads[0] + loads[1] * below + loads[2] * faded
@@ -114,25 +118,3 @@ def _integrate(model, loads, scales, inverse, motion, states):
         states[s + 1] = states[s] + h / 6.0 * total
         t += h
         states[s + 1, 3:7] /= np.sqrt(np.sum(states[s + 1, 3:7] ** 2))
-
-
-@kernel
-def _down(quat):
-    """World's down (0, 0, 1) in the body frame."""
-    x, y, z, w = quat[0], quat[1], quat[2], quat[3]
-    return np.array([2.0 * (x * z - y * w), 2.0 * (y * z + x * w), 1.0 - 2.0 * (x * x + y * y)])
-
-
-@kernel
-def _pose_rate(x, out):
-    """p_dot = R v and the quaternion's rate 1/2 quat (omega, 0), as `integrator` has them."""
-    a, b, c, d = x[3], x[4], x[5], x[6]
-    u, v, w, p, q, r = x[7], x[8], x[9], x[10], x[11], x[12]
-    t0, t1, t2 = b * w - c * v + d * u, c * u - a * w + d * v, a * v - b * u + d * w
-    out[0] = u + 2.0 * (b * t2 - c * t1)
-    out[1] = v + 2.0 * (c * t0 - a * t2)
-    out[2] = w + 2.0 * (a * t1 - b * t0)
-    out[3] = 0.5 * (d * p + b * r - c * q)
-    out[4] = 0.5 * (d * q + c * p - a * r)
-    out[5] = 0.5 * (d * r + a * q - b * p)
-    out[6] = -0.5 * (a * p + b * q + c * r)

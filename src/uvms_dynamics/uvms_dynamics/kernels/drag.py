@@ -93,14 +93,14 @@ def _resist_by_groups(model, work):
     n, slots = np.int64(model[HULL, JOINTS]), _slot(model, 0)
     for group in range(np.int64(model[HULL, GROUPS])):
         first = slots + LANES * SLOT_NUMBERS * group
-        v = _six_lanes(work, first)
+        v = _six(work, first, None)
         force = _cylinder_drag(model, block + group * stride, strips, None, v)
         for k in range(6):
             put_lanes(work, first + LANES * (6 + k), force[k])
     for i in range(1, n + 1):
         force = load6(work, i, FORCE)
         for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
-            force = minus(force, _six_items(work, _slot(model, slot) + 6 * LANES))
+            force = minus(force, _six(work, _slot(model, slot) + 6 * LANES, 0))
         store6(work, i, FORCE, force)
 
 
@@ -113,26 +113,15 @@ def _slot(model, slot):
 
 
 @inner
-def _six_lanes(work, k):
+def _six(work, block, lane):
+    """Motion or force of a slot, or of all eight of a group where lane is None."""
     return (
-        lanes_at(work, k),
-        lanes_at(work, k + LANES),
-        lanes_at(work, k + 2 * LANES),
-        lanes_at(work, k + 3 * LANES),
-        lanes_at(work, k + 4 * LANES),
-        lanes_at(work, k + 5 * LANES),
-    )
-
-
-@inner
-def _six_items(work, k):
-    return (
-        item(work, k),
-        item(work, k + LANES),
-        item(work, k + 2 * LANES),
-        item(work, k + 3 * LANES),
-        item(work, k + 4 * LANES),
-        item(work, k + 5 * LANES),
+        _number(work, block, 0, lane),
+        _number(work, block, 1, lane),
+        _number(work, block, 2, lane),
+        _number(work, block, 3, lane),
+        _number(work, block, 4, lane),
+        _number(work, block, 5, lane),
     )
 
 
@@ -199,15 +188,15 @@ def _three(model, block, k, lane):
     )
 
 
-def _number(model, block, k, lane):
-    """Number k of a cylinder, or of all eight of a group where lane is None."""
+def _number(table, block, k, lane):
+    """Number k of a cylinder or slot, or of all eight of a group where lane is None."""
 
 
 @overload(_number, jit_options=OPTIONS)
-def _number_of(model, block, k, lane):
+def _number_of(table, block, k, lane):
     if isinstance(lane, types.NoneType):
-        return lambda model, block, k, lane: lanes_at(model, block + LANES * k)
-    return lambda model, block, k, lane: item(model, block + LANES * k + lane)
+        return lambda table, block, k, lane: lanes_at(table, block + LANES * k)
+    return lambda table, block, k, lane: item(table, block + LANES * k + lane)
 
 
 @inner

@@ -1,6 +1,7 @@
 """Built-in bodies: closed surfaces of any fineness, centred at the origin, their length along x."""
 
 import math
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, fields
 from typing import ClassVar
 
@@ -13,7 +14,7 @@ from uvms_dynamics.signals import Array
 
 
 @dataclass(frozen=True)
-class Solid:
+class Solid(ABC):
     """A body of given sizes, m, all of them > 0."""
 
     theory: ClassVar[str] = ""
@@ -28,9 +29,9 @@ class Solid:
             if not (math.isfinite(value) and value > 0.0):
                 raise PanelMethodError(f"{field.name} {value:g}: must be a length in m, > 0")
 
+    @abstractmethod
     def panels(self, count: int, halvings: int = 0) -> Panels:
         """Surface of about `count` panels, each then halved in both directions, on the surface."""
-        raise NotImplementedError
 
     def closed_form(self, density: float) -> Array | None:
         """Added mass (6, 6) about the centre from theory, None where there is none."""
