@@ -8,11 +8,10 @@ every body, strips of drag on every link, damping, buoyancy, friction, rotors. T
 
 import numpy as np
 
-from uvms_dynamics import Vehicle, load_vehicle
-from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle import vehicle_from_data
-from uvms_dynamics.vehicle.arm import Cylinder
-from uvms_dynamics.vehicle.shapes import cylinder_added_mass, cylinder_inertia, cylinder_volume
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle, load_vehicle, vehicle_from_data
+from uvms_core.vehicle.arm import Cylinder
+from uvms_core.vehicle.shapes import cylinder_added_mass, cylinder_inertia, cylinder_volume
 
 JOINTS = (4, 8, 16, 32)
 """Numbers of joints that the speed table asks for."""

@@ -7,10 +7,10 @@ import numpy as np
 from uvms_bringup.loop import LoopTick
 from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.signals import Array, PathGoal, to_seconds
 from uvms_dynamics import build_model, end_effector
-from uvms_dynamics.rotations import quat_to_rpy
-from uvms_dynamics.signals import Array, PathGoal, to_seconds
-from uvms_planner import EndEffectorPath
+from uvms_dynamics.kernels.rotations import quat_to_rpy
 
 # The planner is told of the goal in the first tick and begins it a step after that it plans.
 PATH_BEGINS_S = 0.5

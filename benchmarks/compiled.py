@@ -9,12 +9,14 @@ import numpy as np
 from motions import Motion
 from numba import njit
 
-from uvms_dynamics import Model, Vehicle, advance_batch, build_model
-from uvms_dynamics.integrator import System, advance, make_scratch
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import Model, build_model
 from uvms_dynamics.kernels.forward import forward_dynamics_into
 from uvms_dynamics.kernels.motion import make_workspace
-from uvms_dynamics.signals import Array
-from uvms_dynamics.thrusters import build_thrusters
+from uvms_dynamics.simulation import advance_batch
+from uvms_dynamics.simulation.integrator import System, advance, make_scratch
+from uvms_dynamics.simulation.thrusters import build_thrusters
 
 STEP_S = 0.005
 STEPS = 50

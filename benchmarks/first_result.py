@@ -15,7 +15,8 @@ def main() -> None:
     readings = {"python": began}
     import numpy as np
 
-    from uvms_dynamics import build_model, forward_dynamics, load_vehicle
+    from uvms_core.vehicle import load_vehicle
+    from uvms_dynamics import build_model, forward_dynamics
 
     readings["imports"] = time.monotonic()
     vehicle = load_vehicle()

@@ -12,7 +12,7 @@ from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.scenario import load_scenario
 from uvms_bringup.session import prepare
-from uvms_dynamics.signals import to_seconds
+from uvms_core.signals import to_seconds
 
 WARM_S = 3.0
 

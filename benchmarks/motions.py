@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics import Vehicle, load_vehicle
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle, load_vehicle
 
 COUNT = 32
 

@@ -6,10 +6,10 @@ from xml.etree import ElementTree
 import mujoco
 import numpy as np
 
-from uvms_dynamics import Vehicle, matrix_to_quat, quat_multiply
-from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle import Hull, Link
-from uvms_dynamics.vehicle.frames import Pose, distal_pose, mounting_pose
+from uvms_core.signals import Array
+from uvms_core.vehicle import Hull, Link, Vehicle
+from uvms_core.vehicle.frames import Pose, distal_pose, mounting_pose
+from uvms_dynamics import matrix_to_quat, quat_multiply
 
 FLUIDS = ("inertia_box", "ellipsoid")
 """MuJoCo's two models: a box of the body's inertia, which it takes by default, or an ellipsoid."""

@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from uvms_bringup.scenario import load_scenario
+from uvms_core.signals import Array, JointStates, Odometry, Reference, to_nanoseconds
 from uvms_dynamics import build_model, coupling_wrench, restoring_wrench, rpy_to_quat
-from uvms_dynamics.signals import Array, JointStates, Odometry, Reference, to_nanoseconds
 from uvms_planner import MotionPlanner
 
 

@@ -6,9 +6,9 @@ import numpy as np
 import pinocchio as pin
 from motions import Motion
 
-from uvms_dynamics import Vehicle
-from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle.frames import distal_pose, mounting_pose
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.frames import distal_pose, mounting_pose
 
 ABA = "pinocchio.aba called from Python, rigid bodies alone"
 

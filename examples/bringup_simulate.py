@@ -9,10 +9,10 @@ from pathlib import Path
 
 import numpy as np
 
-from uvms_bringup.log.read import RunLog
+from uvms_analysis.log.read import RunLog
 from uvms_bringup.scenario import load_scenario
 from uvms_bringup.session import prepare
-from uvms_dynamics import topics
+from uvms_core import topics
 
 with tempfile.TemporaryDirectory() as folder:
     for current in ("[0.0, 0.0, 0.0]", "[-0.15, 0.1, 0.0]"):

@@ -8,8 +8,8 @@ Run it: python examples/control_allocation.py
 import numpy as np
 
 from uvms_control import AllocatorConfig, ThrustAllocator
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.signals import Wrench
+from uvms_core.signals import Wrench
+from uvms_core.vehicle import load_vehicle
 
 WRENCHES = {
     "a little of everything": [10.0, 5.0, -8.0, 1.0, -3.0, 2.0],

@@ -8,9 +8,9 @@ import argparse
 
 import numpy as np
 
-from uvms_bringup.report import style
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.arm_inertia import arm_added_inertia
+from uvms_analysis.report import style
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.model.arm_inertia import arm_added_inertia
 
 SWING, SHOULDER, ELBOW = 0, 1, 2
 

@@ -6,8 +6,10 @@ Uses uvms_dynamics alone: the plant, its truth, and the mass matrix for the kine
 
 import numpy as np
 
-from uvms_dynamics import Plant, PlantConfig, build_model, load_vehicle, mass_matrix, quat_to_rpy
-from uvms_dynamics.signals import JointCommand, ThrusterCommand
+from uvms_core.signals import JointCommand, ThrusterCommand
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, mass_matrix, quat_to_rpy
+from uvms_dynamics.simulation import Plant, PlantConfig
 
 STRETCHED, SWUNG = np.radians([0.0, 0.0, 0.0, 0.0]), np.radians([60.0, 0.0, 0.0, 0.0])
 SWING_FROM, SWING_TO = 2.0, 10.0  # s

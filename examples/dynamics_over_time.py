@@ -5,14 +5,9 @@ Uses uvms_dynamics alone. Run it: python examples/dynamics_over_time.py
 
 import numpy as np
 
-from uvms_dynamics import (
-    advance_batch,
-    load_vehicle,
-    make_state,
-    make_system,
-    quat_to_rpy,
-    simulate,
-)
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import quat_to_rpy
+from uvms_dynamics.simulation import advance_batch, make_state, make_system, simulate
 
 STEP, STEPS = 0.005, 2000  # s; the plant would say which step is too long, `simulate` does not
 

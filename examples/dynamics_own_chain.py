@@ -7,7 +7,8 @@ Run it: python examples/dynamics_own_chain.py
 
 import numpy as np
 
-from uvms_dynamics import build_model, forward_dynamics, inverse_dynamics, load_vehicle, mass_matrix
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, forward_dynamics, inverse_dynamics, mass_matrix
 
 joint = load_vehicle().arm.joints[1].model_dump()
 upper = {"center_m": [-0.25, 0, 0], "axis": [1, 0, 0], "radius_m": 0.04, "length_m": 0.5}

@@ -7,8 +7,10 @@ Run it: python examples/observer_navigation.py
 
 import numpy as np
 
-from uvms_dynamics import Plant, PlantConfig, load_vehicle, quat_to_rpy, thruster_matrix
-from uvms_dynamics.signals import JointCommand, ThrusterCommand, Wrench
+from uvms_core.signals import JointCommand, ThrusterCommand, Wrench
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import quat_to_rpy, thruster_matrix
+from uvms_dynamics.simulation import Plant, PlantConfig
 from uvms_observer import DisturbanceObserver, NavigationConfig, NavigationFilter, ObserverConfig
 
 vehicle = load_vehicle()

@@ -10,8 +10,8 @@ import numpy as np
 from uvms_bringup.loop import Loop
 from uvms_bringup.scenario import load_scenario
 from uvms_control import Controller, sample_reference, tracking_error
+from uvms_core.signals import JointCommand, JointStates, Odometry, Reference, Wrench
 from uvms_dynamics import quat_to_rpy
-from uvms_dynamics.signals import JointCommand, JointStates, Odometry, Reference, Wrench
 
 
 class PdController:

@@ -6,8 +6,9 @@ the motion of vehicle and joints together. Run it: python examples/planner_path.
 
 import numpy as np
 
-from uvms_dynamics import load_vehicle, rpy_to_quat
-from uvms_dynamics.signals import JointStates, Odometry, to_nanoseconds
+from uvms_core.signals import JointStates, Odometry, to_nanoseconds
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import rpy_to_quat
 from uvms_planner import MotionPlanner, PathPhase, PathSpec, PlannerConfig
 
 PATH = PathSpec(

@@ -11,8 +11,9 @@ from scipy.optimize import lsq_linear
 
 from uvms_control import AllocatorConfig
 from uvms_control.allocation.least_squares import BoundedLeastSquares
-from uvms_dynamics import load_vehicle, thruster_matrix
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import thruster_matrix
 
 COUNT = 64
 AGREEMENT = 1e-6

@@ -9,12 +9,12 @@ from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
 from paired import paired
 from rclpy.serialization import deserialize_message, serialize_message
 
-from uvms_dynamics import topics
-from uvms_dynamics.cdr import codec, schema_text
-from uvms_dynamics.messages import from_message, to_message
-from uvms_dynamics.ros.convert import message_class, to_ros
-from uvms_dynamics.signals import Odometry, Reference
-from uvms_dynamics.topics import Topic
+from uvms_core import topics
+from uvms_core.cdr import codec, schema_text
+from uvms_core.messages import from_message, to_message
+from uvms_core.ros.convert import message_class, to_ros
+from uvms_core.signals import Odometry, Reference
+from uvms_core.topics import Topic
 
 JOINTS = ("swing", "shoulder", "elbow", "wrist")
 MCAP = "mcap_ros2"

@@ -12,7 +12,7 @@ from motions import calm_motion
 from mujoco_chain import FLUIDS, mujoco_model, mujoco_state
 from paired import paired
 
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 NAMES = {
     fluid: f"mujoco.rollout, one thread, RK4, {fluid.replace('_', ' ')} fluid" for fluid in FLUIDS

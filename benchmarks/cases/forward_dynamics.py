@@ -9,8 +9,9 @@ from motions import COUNT, dry_vehicle, motions
 from paired import paired
 from rigid import ABA, Aba
 
-from uvms_dynamics import build_model, forward_dynamics, load_vehicle
-from uvms_dynamics.readable import newton_euler
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, forward_dynamics
+from uvms_dynamics.numpy_reference import newton_euler
 
 KERNEL = "; ours called from compiled code, as the integrator does"
 NUMPY = "the numpy twin, newton_euler.py"

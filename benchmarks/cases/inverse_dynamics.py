@@ -9,8 +9,9 @@ from motions import COUNT, dry_vehicle, motions
 from paired import paired
 from rigid import pinocchio_model
 
-from uvms_dynamics import build_model, inverse_dynamics, load_vehicle
-from uvms_dynamics.readable import newton_euler
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, inverse_dynamics
+from uvms_dynamics.numpy_reference import newton_euler
 
 TWIN = "the numpy twin, newton_euler.py"
 RNEA = "pinocchio.rnea from Python, rigid bodies alone (ours with the water)"

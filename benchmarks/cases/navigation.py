@@ -6,8 +6,9 @@ from collections.abc import Iterator
 import numpy as np
 from figures import Figure, Target
 
-from uvms_dynamics import Plant, PlantConfig, load_vehicle
-from uvms_dynamics.signals import JointCommand, Odometry, ThrusterCommand
+from uvms_core.signals import JointCommand, Odometry, ThrusterCommand
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.simulation import Plant, PlantConfig
 from uvms_observer import NavigationConfig, NavigationFilter
 
 SECONDS, BATCH = 900.0, 200

@@ -6,8 +6,9 @@ import numpy as np
 from figures import Figure, Target
 from paired import processor_seconds_per_call
 
-from uvms_dynamics import Plant, PlantConfig, load_vehicle
-from uvms_dynamics.signals import JointCommand, ThrusterCommand
+from uvms_core.signals import JointCommand, ThrusterCommand
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.simulation import Plant, PlantConfig
 
 PERIODS, ROUNDS = 100, 9
 

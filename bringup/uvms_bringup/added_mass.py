@@ -12,8 +12,9 @@ import numpy as np
 from rich.console import Console
 from rich.progress import Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from uvms_bringup.scenario import vehicle_path
-from uvms_dynamics import load_vehicle
+from uvms_core.signals import Array
+from uvms_core.vehicle import load_vehicle
+from uvms_core.vehicle.locate import vehicle_path
 from uvms_dynamics.panel_method import (
     AddedMassEstimate,
     Body,
@@ -29,7 +30,6 @@ from uvms_dynamics.panel_method.bodies import FILE_ROW, MOST_HALVED, PANELS, SEA
 from uvms_dynamics.panel_method.panels import LONG, longest_edge, mean_edge
 from uvms_dynamics.panel_method.solids import WORDS
 from uvms_dynamics.panel_method.solver import memory_needed
-from uvms_dynamics.signals import Array
 
 SHAPES = "  ".join(f"{word}:{sizes}" for word, sizes in WORDS.items())
 DESCRIPTION = f"""\

@@ -8,13 +8,13 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
+from uvms_analysis.trials.commands import add_commands as add_trial_commands
 from uvms_bringup import added_mass
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.session import Session, prepare
-from uvms_bringup.trials.commands import add_commands as add_trial_commands
-from uvms_dynamics import topics
-from uvms_dynamics.errors import UvmsError
+from uvms_core import topics
+from uvms_core.errors import UvmsError
 
 EXAMPLES = """examples:
   uvms run manipulation                        the 900 s manipulation on six ROS 2 nodes
@@ -170,7 +170,7 @@ def replay(options: argparse.Namespace) -> int:
 
 def report(options: argparse.Namespace) -> int:
     """`uvms report`."""
-    from uvms_bringup.report import report as make  # matplotlib takes its time
+    from uvms_analysis.report import report as make  # matplotlib takes its time
 
     page = make(options.log, options.output)
     print(page)

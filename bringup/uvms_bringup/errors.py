@@ -1,6 +1,6 @@
-"""Errors of bringup: scenarios, runs and logs."""
+"""Errors of bringup: scenarios and runs."""
 
-from uvms_dynamics.errors import UvmsError
+from uvms_core.errors import UvmsError
 
 
 class BringupError(UvmsError):
@@ -13,11 +13,3 @@ class ScenarioError(BringupError):
 
 class RunError(BringupError):
     """A run could not be started or did not come to its end."""
-
-
-class LogError(BringupError):
-    """A log is missing, unreadable or lacks what was asked of it."""
-
-
-class TrialError(BringupError):
-    """A recorded trial is unreadable, lacks values, or cannot be driven by the vehicle given."""

@@ -5,10 +5,7 @@ from dataclasses import dataclass
 
 from uvms_bringup.scenario import Scenario
 from uvms_control import Controller, ThrustAllocator
-from uvms_dynamics import Plant, Vehicle
-from uvms_dynamics.gate import Covering
-from uvms_dynamics.plant import PlantTruth, SensorFrame
-from uvms_dynamics.signals import (
+from uvms_core.signals import (
     Allocation,
     DisturbanceBudget,
     JointCommand,
@@ -18,6 +15,10 @@ from uvms_dynamics.signals import (
     Wrench,
     to_nanoseconds,
 )
+from uvms_core.tick_gate import Covering
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation import Plant
+from uvms_dynamics.simulation.plant import PlantTruth, SensorFrame
 from uvms_observer import DisturbanceObserver, NavigationFilter
 from uvms_planner import MotionPlanner, PlannerStep
 

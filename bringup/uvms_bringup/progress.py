@@ -6,7 +6,7 @@ import time
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
-from uvms_dynamics.signals import to_seconds
+from uvms_core.signals import to_seconds
 
 REFRESH_S = 0.2
 LINE_S = 5.0

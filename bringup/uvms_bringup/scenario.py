@@ -9,26 +9,22 @@ import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from uvms_bringup.errors import ScenarioError
+from uvms_bringup.locate import scenario_folder
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
-from uvms_dynamics import (
-    PlantConfig,
-    Vehicle,
-    build_model,
-    end_effector,
-    load_vehicle,
-)
-from uvms_dynamics.config import Config, validated
-from uvms_dynamics.plant.config import initial_joints
-from uvms_dynamics.rotations import matrix_to_quat, rpy_to_quat
-from uvms_dynamics.signals import Array, JointGoal, PathGoal
-from uvms_dynamics.vehicle.locate import reference_file
-from uvms_dynamics.yaml_text import parse_yaml, read_yaml
+from uvms_core.config import Config, validated
+from uvms_core.signals import Array, JointGoal, PathGoal
+from uvms_core.vehicle import Vehicle, load_vehicle
+from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
+from uvms_core.yaml_text import parse_yaml, read_yaml
+from uvms_dynamics import build_model, end_effector
+from uvms_dynamics.kernels.rotations import matrix_to_quat, rpy_to_quat
+from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.plant.config import initial_joints
 from uvms_observer import NavigationConfig, ObserverConfig
 from uvms_planner import PathSpec, PlannerConfig
 
 VEHICLE_PREFIX = "vehicle."
-FILE_SUFFIXES = (".yaml", ".yml")
 LONGEST_RUN_S = 1e6
 
 
@@ -165,14 +161,7 @@ def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, 
 
 def known_scenarios() -> dict[str, Path]:
     """Scenarios that come with the project, by name."""
-    folder = reference_file().parent / "scenarios"
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
-
-
-def known_vehicles() -> dict[str, Path]:
-    """Vehicles that come with the project, by name."""
-    folder = reference_file().parent
-    return {path.stem: path for path in sorted(folder.glob("*.yaml"))}
+    return {path.stem: path for path in sorted(scenario_folder().glob("*.yaml"))}
 
 
 def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Scenario:
@@ -200,21 +189,6 @@ def _scenario_path(name: str) -> Path:
     if name not in known:
         choices = ", ".join(known)
         raise ScenarioError(f"unknown scenario {name!r}; choose one of {choices}, or a YAML file")
-    return known[name]
-
-
-def vehicle_path(name: str) -> Path:
-    """The file of a vehicle that comes with the project, or the YAML file that `name` is.
-
-    Raises ScenarioError for a name that is neither.
-    """
-    path = Path(name)
-    if path.suffix in FILE_SUFFIXES:
-        return path
-    known = known_vehicles()
-    if name not in known:
-        choices = ", ".join(known)
-        raise ScenarioError(f"unknown vehicle {name!r}; choose one of {choices}, or a YAML file")
     return known[name]
 
 

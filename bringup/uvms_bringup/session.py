@@ -12,18 +12,18 @@ from typing import Any
 
 import yaml
 
+from uvms_analysis.log.encode import SignalWriter
+from uvms_analysis.log.goal_file import path_to_json
+from uvms_analysis.log.writer import LogWriter
+from uvms_analysis.summary import summarise
 from uvms_bringup.errors import RunError
-from uvms_bringup.log.encode import SignalWriter
-from uvms_bringup.log.goal_file import path_to_json
-from uvms_bringup.log.writer import LogWriter
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
-from uvms_bringup.summary import summarise
-from uvms_dynamics import Vehicle, dump_vehicle
-from uvms_dynamics.errors import UvmsError
-from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core.errors import UvmsError
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core.vehicle import Vehicle, dump_vehicle
 
 Goal = PathGoal | JointGoal | None
 Run = Callable[[LogWriter, Callable[[int, str], None]], bool]

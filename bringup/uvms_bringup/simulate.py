@@ -2,13 +2,14 @@
 
 from collections.abc import Callable
 
-from uvms_bringup.log.encode import SignalWriter
+from uvms_analysis.log.encode import SignalWriter
 from uvms_bringup.loop import Loop, LoopTick
 from uvms_bringup.scenario import Scenario
-from uvms_dynamics import Vehicle, diagnostics, topics
-from uvms_dynamics.description import StateFrames, description_message, static_message
-from uvms_dynamics.diagnostics import Status
-from uvms_dynamics.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
+from uvms_core import diagnostics, topics
+from uvms_core.description import StateFrames, description_message, static_message
+from uvms_core.diagnostics import Status
+from uvms_core.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
+from uvms_core.vehicle import Vehicle
 from uvms_planner import PlannerStep
 
 Progress = Callable[[int, str], None]

@@ -1,11 +1,12 @@
 """What must fit together before a run can start: periods, and the start with the vehicle."""
 
 from uvms_bringup.errors import ScenarioError
-from uvms_dynamics import PlantConfig, Vehicle
-from uvms_dynamics.errors import ConfigError
-from uvms_dynamics.plant.config import initial_joints
-from uvms_dynamics.plant.stability import check_step
-from uvms_dynamics.signals import to_nanoseconds
+from uvms_core.errors import ConfigError
+from uvms_core.signals import to_nanoseconds
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.plant.config import initial_joints
+from uvms_dynamics.simulation.plant.stability import check_step
 from uvms_planner import PlannerConfig
 
 SENSORS = ("imu", "dvl", "pressure", "gps")

@@ -21,6 +21,7 @@ setup(
         "numpy>=1.26",
         "pydantic>=2.5",
         "scipy>=1.11",
+        "uvms_core",
         "uvms_dynamics",
     ],
     zip_safe=False,
@@ -28,6 +29,11 @@ setup(
         "console_scripts": [
             "controller = uvms_control.nodes.controller:main",
             "thrust_allocator = uvms_control.nodes.thrust_allocator:main",
-        ]
+        ],
+        "uvms.nodes": [
+            "controller = uvms_control.nodes.controller:ControllerNode",
+            "thrust_allocator = uvms_control.nodes.thrust_allocator:ThrustAllocatorNode",
+        ],
+        "uvms.kernels": ["uvms_control = uvms_control"],
     },
 )

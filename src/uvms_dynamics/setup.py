@@ -5,7 +5,7 @@ PACKAGE = "uvms_dynamics"
 setup(
     name=PACKAGE,
     version="0.1.0",
-    description="Geometry, hydrodynamics, sensors and the simulated plant of an underwater vehicle-manipulator system.",
+    description="Dynamics with full hydrodynamics and the simulated plant of an underwater vehicle-manipulator system.",
     maintainer="UVMS maintainers",
     maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
@@ -17,17 +17,18 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=[
-        "numba>=0.61",
+        "numba>=0.61,<0.69",
         "numpy>=1.26",
         "pydantic>=2.5",
-        "PyYAML>=6",
-        "scipy>=1.11",
+        "uvms_core",
     ],
-    extras_require={"panels": ["capytaine>=3.0", "trimesh>=4.0"]},
+    extras_require={"panels": ["capytaine>=3.0", "scipy>=1.11", "trimesh>=4.0"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [
             "plant = uvms_dynamics.nodes.plant:main",
-        ]
+        ],
+        "uvms.nodes": ["plant = uvms_dynamics.nodes.plant:PlantNode"],
+        "uvms.kernels": ["uvms_dynamics = uvms_dynamics.kernels"],
     },
 )

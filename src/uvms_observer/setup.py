@@ -20,6 +20,7 @@ setup(
         "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
+        "uvms_core",
         "uvms_dynamics",
     ],
     zip_safe=False,
@@ -27,6 +28,11 @@ setup(
         "console_scripts": [
             "navigation = uvms_observer.nodes.navigation:main",
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:main",
-        ]
+        ],
+        "uvms.nodes": [
+            "navigation = uvms_observer.nodes.navigation:NavigationNode",
+            "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
+        ],
+        "uvms.kernels": ["uvms_observer = uvms_observer"],
     },
 )

@@ -20,12 +20,17 @@ setup(
         "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
+        "uvms_core",
         "uvms_dynamics",
     ],
     zip_safe=False,
     entry_points={
         "console_scripts": [
             "motion_planner = uvms_planner.nodes.motion_planner:main",
-        ]
+        ],
+        "uvms.nodes": [
+            "motion_planner = uvms_planner.nodes.motion_planner:MotionPlannerNode",
+        ],
+        "uvms.kernels": ["uvms_planner = uvms_planner"],
     },
 )

@@ -6,10 +6,12 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 PACKAGES = {
+    "uvms_core": ROOT / "src/uvms_core",
     "uvms_dynamics": ROOT / "src/uvms_dynamics",
     "uvms_observer": ROOT / "src/uvms_observer",
     "uvms_planner": ROOT / "src/uvms_planner",
     "uvms_control": ROOT / "src/uvms_control",
+    "uvms_analysis": ROOT / "src/uvms_analysis",
     "uvms_bringup": ROOT / "bringup",
 }
 INTERFACES = ROOT / "src/uvms_msgs"

@@ -7,11 +7,13 @@ ROS = {"rclpy", "builtin_interfaces", "rosidl_runtime_py", "std_srvs", "ament_in
 SHELLS = {"nodes", "ros"}
 # What a package may import besides itself; uvms_msgs is for its shells.
 MAY_IMPORT = {
-    "uvms_dynamics": set(),
-    "uvms_observer": {"uvms_dynamics"},
-    "uvms_planner": {"uvms_dynamics"},
-    "uvms_control": {"uvms_dynamics"},
-    "uvms_bringup": {"uvms_dynamics", "uvms_observer", "uvms_planner", "uvms_control"},
+    "uvms_core": set(),
+    "uvms_dynamics": {"uvms_core"},
+    "uvms_observer": {"uvms_core", "uvms_dynamics"},
+    "uvms_planner": {"uvms_core", "uvms_dynamics"},
+    "uvms_control": {"uvms_core", "uvms_dynamics"},
+    "uvms_analysis": {"uvms_core", "uvms_dynamics"},
+    "uvms_bringup": set(PACKAGES),
 }
 
 

@@ -8,10 +8,12 @@ from project import CODE, INTERFACES, PACKAGES, ROOT, imports, modules, python_f
 
 LONGEST = 400
 EXECUTABLES = {
+    "uvms_core": set(),
     "uvms_dynamics": {"plant"},
     "uvms_observer": {"navigation", "disturbance_observer"},
     "uvms_planner": {"motion_planner"},
     "uvms_control": {"controller", "thrust_allocator"},
+    "uvms_analysis": set(),
     "uvms_bringup": {"uvms", "state_publisher"},
 }
 
@@ -61,7 +63,8 @@ def test_manifest_and_setup_agree(package, folder):
 @pytest.mark.parametrize(("package", "folder"), PACKAGES.items())
 def test_executables_name_modules_that_have_a_main(package, folder):
     scripts = dict(
-        entry.split(" = ") for entry in setup_arguments(folder)["entry_points"]["console_scripts"]
+        entry.split(" = ")
+        for entry in setup_arguments(folder)["entry_points"].get("console_scripts", [])
     )
     assert set(scripts) == EXECUTABLES[package]
     for target in scripts.values():

@@ -8,10 +8,10 @@ import pytest
 from uvms_bringup.loop import LoopTick
 from uvms_bringup.scenario import load_scenario
 from uvms_bringup.simulate import simulate
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.signals import PathGoal, to_seconds
 from uvms_dynamics import build_model, end_effector
-from uvms_dynamics.rotations import quat_to_rpy
-from uvms_dynamics.signals import PathGoal, to_seconds
-from uvms_planner import EndEffectorPath
+from uvms_dynamics.kernels.rotations import quat_to_rpy
 
 
 @dataclass

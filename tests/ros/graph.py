@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 import pytest
 
-from uvms_bringup.log.read import RunLog
-from uvms_dynamics.topics import Topic
+from uvms_analysis.log.read import RunLog
+from uvms_core.topics import Topic
 
 _DOMAINS = itertools.count(10 + os.getpid() % 40)
 

@@ -12,11 +12,11 @@ from rclpy.parameter import Parameter
 from rclpy.qos import QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
-from uvms_dynamics.messages import from_message, to_message
-from uvms_dynamics.ros.convert import message_class, to_ros
-from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.ros.spin import Spinner
-from uvms_dynamics.topics import Topic
+from uvms_core.messages import from_message, to_message
+from uvms_core.ros.convert import message_class, to_ros
+from uvms_core.ros.node import qos_profile
+from uvms_core.ros.spin import Spinner
+from uvms_core.topics import Topic
 
 
 class Peer(Node):

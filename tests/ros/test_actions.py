@@ -15,8 +15,8 @@ from uvms_bringup.ros.parameter_file import node_parameters
 from uvms_bringup.ros.run import make_node
 from uvms_bringup.scenario import load_scenario
 from uvms_bringup.session import vehicle_file
-from uvms_dynamics.ros.spin import Spinner
-from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
+from uvms_core.ros.spin import Spinner
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 
 
 @contextmanager

@@ -80,7 +80,16 @@ def test_interfaces_come_from_the_workspace(workspace, module):
 
 
 @pytest.mark.parametrize(
-    "package", ["uvms_dynamics", "uvms_observer", "uvms_planner", "uvms_control", "uvms_bringup"]
+    "package",
+    [
+        "uvms_core",
+        "uvms_dynamics",
+        "uvms_observer",
+        "uvms_planner",
+        "uvms_control",
+        "uvms_analysis",
+        "uvms_bringup",
+    ],
 )
 def test_python_packages_come_from_the_workspace(workspace, package):
     command = f"python -c 'import {package} as m; print(m.__file__)'"
@@ -88,5 +97,9 @@ def test_python_packages_come_from_the_workspace(workspace, package):
 
 
 def test_configuration_is_shared(workspace):
-    installed = {file.name for file in (workspace / "share/uvms_bringup/config").iterdir()}
-    assert installed == {file.name for file in (ROOT / "bringup/config").glob("*.yaml")}
+    """A run from the workspace finds scenarios and vehicles without the source tree."""
+    shared = workspace / "share/uvms_bringup/config/scenarios"
+    scenarios = {file.name for file in (ROOT / "bringup/config/scenarios").glob("*.yaml")}
+    assert {file.name for file in shared.iterdir()} == scenarios
+    command = "python -c 'from uvms_core.vehicle import locate; print(*locate.known_vehicles())'"
+    assert in_workspace(workspace, command).split() == ["bluerov2_alpha5", "reference_auv"]

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 from graph import own_domain
 
-from uvms_dynamics import topics
+from uvms_core import topics
 
 PREFIX = Path(sys.prefix)
 EXECUTABLES = [PREFIX / "lib" / peers.package / node for node, peers in topics.NODES.items()]

@@ -6,10 +6,11 @@ from graph import uvms
 from in_process import Peer, graph_of, parameters, spin_until
 
 from uvms_control.nodes.thrust_allocator import ThrustAllocatorNode
-from uvms_dynamics import diagnostics, load_vehicle, topics
-from uvms_dynamics.errors import ConfigError
+from uvms_core import diagnostics, topics
+from uvms_core.errors import ConfigError
+from uvms_core.signals import ThrusterCommand, Wrench
+from uvms_core.vehicle import load_vehicle
 from uvms_dynamics.nodes.plant import PlantNode
-from uvms_dynamics.signals import ThrusterCommand, Wrench
 
 VEHICLE = load_vehicle()
 TOO_FAST = """

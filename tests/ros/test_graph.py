@@ -4,8 +4,8 @@ import numpy as np
 import pytest
 from graph import Outcome, column, finished, uvms
 
-from uvms_bringup.log.compare import compare
-from uvms_dynamics import topics
+from uvms_analysis.log.compare import compare
+from uvms_core import topics
 
 DURATION = "6"
 SAME = (

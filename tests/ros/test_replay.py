@@ -7,23 +7,24 @@ import pytest
 import yaml
 from graph import own_domain
 
-from uvms_bringup.log.compare import compare
-from uvms_bringup.log.encode import SignalWriter
-from uvms_bringup.log.read import RunLog
-from uvms_bringup.log.writer import LogWriter
+from uvms_analysis.log.compare import compare
+from uvms_analysis.log.encode import SignalWriter
+from uvms_analysis.log.read import RunLog
+from uvms_analysis.log.writer import LogWriter
 from uvms_bringup.scenario import load_scenario
 from uvms_bringup.simulate import simulate
-from uvms_dynamics import dump_vehicle, topics
+from uvms_core import topics
+from uvms_core.vehicle import dump_vehicle
 
 REPLAY = "import sys; from uvms_bringup.ros.replay import replay; sys.exit(replay({arguments}))"
 LISTENER = """
 from rclpy.node import Node
 from rclpy.task import Future
-from uvms_dynamics import topics
-from uvms_dynamics.messages import from_message
-from uvms_dynamics.ros.convert import message_class
-from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.ros.spin import Spinner, start
+from uvms_core import topics
+from uvms_core.messages import from_message
+from uvms_core.ros.convert import message_class
+from uvms_core.ros.node import qos_profile
+from uvms_core.ros.spin import Spinner, start
 
 start(["listener"])
 node, came = Node("listener"), Future()

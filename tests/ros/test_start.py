@@ -9,9 +9,9 @@ from std_srvs.srv import Trigger
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros import conductor
 from uvms_bringup.ros.conductor import Conductor
+from uvms_core.ros.request import Request
+from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_dynamics.nodes.plant import PlantNode
-from uvms_dynamics.ros.request import Request
-from uvms_dynamics.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 
 AGAIN_S = 0.05
 

@@ -8,14 +8,16 @@ from graph import Outcome, finished, uvms
 from in_process import Peer, graph_of, parameters, spin_until
 from rclpy.node import Node
 
-from uvms_bringup.log.schema import qos_from_yaml
+from uvms_analysis.log.schema import qos_from_yaml
 from uvms_bringup.ros.recorder import Recorder
 from uvms_bringup.ros.state_publisher import StatePublisherNode
-from uvms_dynamics import build_model, end_effector, load_vehicle, topics
-from uvms_dynamics.cdr import codec
-from uvms_dynamics.description import static_message, urdf_text
-from uvms_dynamics.rotations import quat_to_matrix
-from uvms_dynamics.signals import JointStates, Odometry
+from uvms_core import topics
+from uvms_core.cdr import codec
+from uvms_core.description import static_message, urdf_text
+from uvms_core.signals import JointStates, Odometry
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, end_effector
+from uvms_dynamics.kernels.rotations import quat_to_matrix
 
 DURATION = "2"
 TICKS = 41

@@ -6,8 +6,8 @@ import trimesh
 import yaml
 
 from uvms_bringup.cli import main
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.vehicle.locate import reference_file
+from uvms_core.vehicle import load_vehicle
+from uvms_core.vehicle.locate import reference_file
 
 
 @pytest.fixture(autouse=True)

@@ -7,8 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from uvms_analysis.log.read import RunLog
 from uvms_bringup.cli import main
-from uvms_bringup.log.read import RunLog
 
 BRINGUP = Path(__file__).parents[2] / "bringup" / "bringup.py"
 COMMANDS = ("run", "simulate", "replay", "report")

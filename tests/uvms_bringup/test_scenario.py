@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from pydantic import BaseModel, ValidationError
 
+from uvms_bringup import locate
 from uvms_bringup.errors import ScenarioError
 from uvms_bringup.scenario import (
     JointMotion,
@@ -13,10 +14,11 @@ from uvms_bringup.scenario import (
     start_of_end_effector,
 )
 from uvms_bringup.simulate import simulate
-from uvms_dynamics import PlantConfig, Vehicle, dump_vehicle, end_effector
-from uvms_dynamics.errors import ConfigError
-from uvms_dynamics.model import build_model
-from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_core.errors import ConfigError
+from uvms_core.vehicle import Vehicle, dump_vehicle, vehicle_from_data
+from uvms_dynamics import end_effector
+from uvms_dynamics.model.vehicle_table import build_model
+from uvms_dynamics.simulation import PlantConfig
 from uvms_observer import NavigationConfig
 
 SHORT = "duration_s: 1.0\n"
@@ -248,3 +250,16 @@ def test_a_deep_start_is_known_to_navigation():
     )
     assert len(errors) == 5
     assert np.abs(errors).max() < 0.1
+
+
+def test_the_installed_share_folder_is_found(tmp_path, monkeypatch):
+    """An installed package has no source tree beside it."""
+    share = tmp_path / "share" / "uvms_bringup" / "config" / "scenarios"
+    share.mkdir(parents=True)
+    monkeypatch.setattr(locate, "__file__", str(tmp_path / "lib" / "uvms_bringup" / "locate.py"))
+    monkeypatch.setattr(locate.sys, "prefix", "/nowhere/else")
+    monkeypatch.setenv("AMENT_PREFIX_PATH", f"/nowhere:{tmp_path}")
+    assert locate.scenario_folder() == share
+    monkeypatch.setenv("AMENT_PREFIX_PATH", "/nowhere")
+    with pytest.raises(ScenarioError, match=r"were not found; looked for\n  .*\n  /nowhere/share/"):
+        locate.scenario_folder()

@@ -9,14 +9,9 @@ import numpy as np
 from numba import njit
 
 from uvms_control import ThrustAllocator
-from uvms_dynamics import (
-    coupling_wrench,
-    forward_dynamics,
-    joint_passive_torque,
-    restoring_wrench,
-)
-from uvms_dynamics.rotations import quat_multiply, quat_normalize, quat_to_matrix
-from uvms_dynamics.signals import JointStates, Odometry, Reference, Wrench, to_nanoseconds
+from uvms_core.signals import JointStates, Odometry, Reference, Wrench, to_nanoseconds
+from uvms_dynamics import coupling_wrench, forward_dynamics, joint_passive_torque, restoring_wrench
+from uvms_dynamics.kernels.rotations import quat_multiply, quat_normalize, quat_to_matrix
 
 PERIOD = 0.05
 SUBSTEPS = 10

@@ -12,9 +12,10 @@ from uvms_control.allocation import (
 )
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
-from uvms_dynamics import configuration_matrix, load_vehicle
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import Wrench, to_nanoseconds
+from uvms_core.errors import SignalError
+from uvms_core.signals import Wrench, to_nanoseconds
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import configuration_matrix
 
 VEHICLE = load_vehicle()
 REFERENCE = ThrustAllocator(VEHICLE, AllocatorConfig())

@@ -10,7 +10,8 @@ from scipy.linalg import expm
 from uvms_control import ArmControlConfig, ArmController, ControlConfig, Controller
 from uvms_control.arm_controller import floating_inertia, sampled_gains
 from uvms_control.errors import ControlSetupError
-from uvms_dynamics import build_model, forward_dynamics, load_vehicle, mass_matrix
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, forward_dynamics, mass_matrix
 
 VEHICLE = load_vehicle()
 MODEL = build_model(VEHICLE)

@@ -15,8 +15,9 @@ from uvms_control import (
     sample_reference,
     tracking_error,
 )
-from uvms_dynamics import build_model, end_effector, load_vehicle
-from uvms_dynamics.rotations import quat_multiply, quat_to_rpy, rotation_vector_to_quat
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, end_effector
+from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_rpy, rotation_vector_to_quat
 
 VEHICLE = load_vehicle()
 MODEL = build_model(VEHICLE)

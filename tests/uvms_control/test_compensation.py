@@ -10,8 +10,9 @@ from uvms_control import CompensationConfig
 from uvms_control.compensation import EndEffectorCompensation
 from uvms_control.reference import ReferenceSample
 from uvms_control.vehicle_data import joint_limits
-from uvms_dynamics import build_model, end_effector, load_vehicle
-from uvms_dynamics.rotations import rotation_vector_to_quat
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, end_effector
+from uvms_dynamics.kernels.rotations import rotation_vector_to_quat
 
 VEHICLE = load_vehicle()
 MODEL = build_model(VEHICLE)

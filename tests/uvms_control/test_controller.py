@@ -8,9 +8,9 @@ from closed_loop import at_rest, hold
 from pydantic import ValidationError
 
 from uvms_control import ControlConfig, Controller, VehicleControlConfig
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import Wrench
+from uvms_core.errors import SignalError
+from uvms_core.signals import Wrench
+from uvms_core.vehicle import load_vehicle
 
 VEHICLE = load_vehicle()
 STOWED = np.radians([0.0, 0.0, 135.0, 0.0])

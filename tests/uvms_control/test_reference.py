@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 from trajectories import joints, reference, vehicle
 
 from uvms_control.reference import check_reference, right_jacobian, sample_reference
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.rotations import quat_to_matrix, rotation_vector_to_quat, skew
-from uvms_dynamics.signals import to_nanoseconds
+from uvms_core.errors import SignalError
+from uvms_core.signals import to_nanoseconds
+from uvms_dynamics.kernels.rotations import quat_to_matrix, rotation_vector_to_quat, skew
 
 TIMES = np.linspace(0.0, 0.5, 6)
 STAMP = 3_000_000_000

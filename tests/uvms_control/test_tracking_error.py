@@ -6,13 +6,13 @@ from hypothesis import strategies as st
 
 from uvms_control.reference import ReferenceSample
 from uvms_control.tracking_error import tracking_error
-from uvms_dynamics.rotations import (
+from uvms_core.signals import Odometry
+from uvms_dynamics.kernels.rotations import (
     quat_multiply,
     quat_to_matrix,
     rotation_vector_to_quat,
     rpy_to_quat,
 )
-from uvms_dynamics.signals import Odometry
 
 ZERO = np.zeros(6)
 vectors = st.lists(st.floats(-1.0, 1.0), min_size=3, max_size=3).map(np.array)

@@ -13,15 +13,16 @@ from uvms_control import (
     ThrustAllocator,
     VehicleControlConfig,
 )
-from uvms_dynamics import build_model, forward_dynamics, load_vehicle
-from uvms_dynamics.rotations import (
+from uvms_core.signals import JointStates, Odometry, Wrench
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, forward_dynamics
+from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
     quat_to_rotation_vector,
     quat_to_rpy,
     rpy_to_quat,
 )
-from uvms_dynamics.signals import JointStates, Odometry, Wrench
 
 VEHICLE = load_vehicle()
 MODEL = build_model(VEHICLE)

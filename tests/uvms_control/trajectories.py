@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
-from uvms_dynamics.signals import Reference
+from uvms_core.signals import Reference
+from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
 
 AMPLITUDE = np.array([0.8, -0.5, 0.6, 0.4])
 FREQUENCY = np.array([0.7, 1.1, 0.5, 0.9])

@@ -4,9 +4,9 @@ from typing import Any
 
 import numpy as np
 
-from uvms_dynamics import signals, topics
-from uvms_dynamics.diagnostics import Status
-from uvms_dynamics.topics import Action, Topic
+from uvms_core import signals, topics
+from uvms_core.diagnostics import Status
+from uvms_core.topics import Action, Topic
 
 JOINTS = ("swing", "shoulder", "elbow", "wrist")
 THRUSTERS = ("main", "side_fore", "side_aft", "up1", "up2", "up3", "up4")

@@ -3,10 +3,18 @@
 import numpy as np
 from random_vehicles import random_motion
 
+from uvms_core.vehicle.frames import arm_frames
 from uvms_dynamics import build_model, mass_matrix, quat_to_matrix
-from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY, System, advance, make_scratch
-from uvms_dynamics.thrusters import build_thrusters, thruster_matrix
-from uvms_dynamics.vehicle.frames import arm_frames
+from uvms_dynamics.model import thruster_matrix
+from uvms_dynamics.simulation.integrator import (
+    JOINTS,
+    QUATERNION,
+    VELOCITY,
+    System,
+    advance,
+    make_scratch,
+)
+from uvms_dynamics.simulation.thrusters import build_thrusters
 
 
 class FreeRun:

@@ -8,7 +8,7 @@ exact to rounding, so everything here must stay analytic: no norm, no conjugate.
 
 import numpy as np
 
-from uvms_dynamics.drag_table import PER_OCTAVE
+from uvms_dynamics.kernels.drag_table import PER_OCTAVE
 
 STEP = 1e-30
 

@@ -4,8 +4,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.vehicle import Vehicle, vehicle_from_data
+from uvms_core.vehicle import Vehicle, load_vehicle, vehicle_from_data
 
 REFERENCE = load_vehicle()
 

@@ -5,7 +5,8 @@ import pytest
 from numba.core.errors import NumbaError
 
 import uvms_dynamics as kernels
-from uvms_dynamics import build_model, load_vehicle
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model
 
 VEHICLE = load_vehicle()
 MODEL, N = build_model(VEHICLE), VEHICLE.n_joints

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from numba import njit
 
-from uvms_dynamics import build_model, load_vehicle
-from uvms_dynamics.drag_table import FIRST_OCTAVE, LAST_OCTAVE, resample
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model
 from uvms_dynamics.kernels.arithmetic import bounded, hyperbolic_tangent, sine_cosine
 from uvms_dynamics.kernels.drag import coefficient
+from uvms_dynamics.kernels.drag_table import FIRST_OCTAVE, LAST_OCTAVE, resample
 from uvms_dynamics.kernels.jit import OPTIONS
 from uvms_dynamics.kernels.lanes import LANES, lane_vector
 from uvms_dynamics.kernels.layout import AXIAL, CROSS_FLOW, HULL

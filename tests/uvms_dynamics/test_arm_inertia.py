@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from uvms_dynamics import build_model, load_vehicle, mass_matrix
-from uvms_dynamics.arm_inertia import arm_added_inertia
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.vehicle import dump_vehicle, vehicle_from_yaml
+from uvms_core.errors import SignalError
+from uvms_core.vehicle import dump_vehicle, load_vehicle, vehicle_from_yaml
+from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics.model.arm_inertia import arm_added_inertia
 
 VEHICLE = load_vehicle()
 # Elbow angle, about the swing axis, about the shoulder axis: the design data of the reference

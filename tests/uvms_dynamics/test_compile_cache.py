@@ -9,8 +9,8 @@ from pathlib import Path
 
 import pytest
 
-from uvms_dynamics import compile_cache
-from uvms_dynamics.compile_cache import fingerprint
+from uvms_dynamics.kernels import compile_cache
+from uvms_dynamics.kernels.compile_cache import fingerprint
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import pytest
 from free_run import FreeRun
 from random_vehicles import REFERENCE, changed, random_vehicle
 
-from uvms_dynamics.integrator import QUATERNION, VELOCITY
+from uvms_dynamics.simulation.integrator import QUATERNION, VELOCITY
 
 STEPS = np.array([0.02, 0.01, 0.005, 0.0025])
 SEEDS = (3, 4, 5, 6)

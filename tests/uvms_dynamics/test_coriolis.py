@@ -6,7 +6,7 @@ from hypothesis import strategies as st
 from random_vehicles import norm_error, random_motion, random_vehicle
 
 from uvms_dynamics import build_model, inverse_dynamics, mass_matrix
-from uvms_dynamics.readable.coriolis import coriolis_matrix
+from uvms_dynamics.numpy_reference.coriolis import coriolis_matrix
 
 CASES = st.tuples(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 3, 4, 7, 16]))
 quick = settings(max_examples=20, deadline=None, derandomize=True)

@@ -6,17 +6,16 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_vehicles import REFERENCE, norm_error, random_motion, random_vehicle
 
+from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import (
-    Plant,
-    PlantConfig,
     build_model,
     hull_bias_wrench,
     inverse_dynamics,
     quat_to_matrix,
     thruster_matrix,
 )
-from uvms_dynamics.readable import body_inertia, newton_euler
-from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_dynamics.numpy_reference import body_inertia, newton_euler
+from uvms_dynamics.simulation import Plant, PlantConfig
 
 CURRENT = np.array([0.3, -0.2, 0.0])
 CASES = st.tuples(st.integers(0, 2**32 - 1), st.sampled_from([1, 3, 6]))

@@ -7,7 +7,7 @@ from hypothesis import strategies as st
 from random_vehicles import REFERENCE, changed, random_motion, random_vehicle
 
 from uvms_dynamics import build_model, hull_bias_wrench, inverse_dynamics, quat_to_matrix
-from uvms_dynamics.integrator import JOINTS
+from uvms_dynamics.simulation.integrator import JOINTS
 
 CASES = st.tuples(st.integers(0, 2**32 - 1), st.sampled_from([1, 2, 4, 7]))
 SPEEDS = st.floats(-4.0, 1.5).map(lambda exponent: 10.0**exponent)

@@ -5,10 +5,10 @@ import pytest
 from free_run import FreeRun
 from random_vehicles import REFERENCE, random_vehicle
 
-from uvms_dynamics import PlantConfig
-from uvms_dynamics.integrator import QUATERNION, VELOCITY
-from uvms_dynamics.plant.stability import greatest_step
-from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_core.vehicle import vehicle_from_data
+from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.integrator import QUATERNION, VELOCITY
+from uvms_dynamics.simulation.plant.stability import greatest_step
 
 
 def edited(change):

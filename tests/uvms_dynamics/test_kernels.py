@@ -8,9 +8,9 @@ from random_vehicles import random_motion, random_vehicle
 
 import uvms_dynamics as kernels
 from uvms_dynamics import build_model
-from uvms_dynamics.drag_table import resample
-from uvms_dynamics.readable import body_forces, kinematics, newton_euler
-from uvms_dynamics.rotations import quat_to_matrix
+from uvms_dynamics.kernels.drag_table import resample
+from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_dynamics.numpy_reference import body_forces, kinematics, newton_euler
 
 CASES = st.tuples(st.integers(0, 2**32 - 1), st.integers(1, 7))
 quick = settings(max_examples=25, deadline=None, derandomize=True)

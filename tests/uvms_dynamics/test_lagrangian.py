@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 from random_vehicles import changed, norm_error, random_motion, random_vehicle
 
+from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import (
     build_model,
     forward_dynamics,
@@ -13,7 +14,6 @@ from uvms_dynamics import (
     quat_to_matrix,
     restoring_wrench,
 )
-from uvms_dynamics.vehicle import vehicle_from_data
 
 SIZES = [1, 2, 4, 8, 16, 32]
 

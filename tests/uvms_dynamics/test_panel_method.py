@@ -6,7 +6,10 @@ import numpy as np
 import pytest
 import trimesh
 
-from uvms_dynamics import load_vehicle
+from uvms_core.vehicle import load_vehicle
+from uvms_core.vehicle.hull import Spheroid
+from uvms_core.vehicle.locate import reference_file
+from uvms_core.vehicle.shapes import spheroid_added_mass
 from uvms_dynamics.panel_method import (
     Box,
     Cylinder,
@@ -28,9 +31,6 @@ from uvms_dynamics.panel_method import (
 )
 from uvms_dynamics.panel_method.checks import check_closed, check_outward
 from uvms_dynamics.panel_method.panels import with_short_edges
-from uvms_dynamics.vehicle.hull import Spheroid
-from uvms_dynamics.vehicle.locate import reference_file
-from uvms_dynamics.vehicle.shapes import spheroid_added_mass
 
 RHO = 1025.0
 HERE = (np.zeros(3), np.eye(3))

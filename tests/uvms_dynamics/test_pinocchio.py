@@ -12,8 +12,8 @@ import pinocchio as pin
 import pytest
 from random_vehicles import norm_error, random_motion, random_vehicle
 
+from uvms_core.vehicle.frames import distal_pose, mounting_pose
 from uvms_dynamics import build_model, end_effector, forward_dynamics, inverse_dynamics, mass_matrix
-from uvms_dynamics.vehicle.frames import distal_pose, mounting_pose
 
 SIZES = [1, 2, 3, 4, 6, 8, 12, 16, 24, 32]
 SEEDS = [11, 12, 13]

@@ -4,9 +4,11 @@ import numpy as np
 import pytest
 from random_vehicles import REFERENCE
 
-from uvms_dynamics import Plant, PlantConfig, load_vehicle, quat_to_rpy
-from uvms_dynamics.errors import ConfigError, PlantDiverged, SignalError
-from uvms_dynamics.signals import JointCommand, ThrusterCommand
+from uvms_core.errors import ConfigError, PlantDiverged, SignalError
+from uvms_core.signals import JointCommand, ThrusterCommand
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import quat_to_rpy
+from uvms_dynamics.simulation import Plant, PlantConfig
 
 N, M = REFERENCE.n_joints, REFERENCE.n_thrusters
 

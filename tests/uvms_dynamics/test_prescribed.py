@@ -5,15 +5,15 @@ import pytest
 from random_vehicles import random_motion, random_vehicle
 from urdf_chains import real_vehicle
 
+from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import build_model, forward_dynamics, quat_to_matrix, restoring_wrench
-from uvms_dynamics.prescribed import (
+from uvms_dynamics.simulation.prescribed import (
     JointMotion,
     Load,
     base_acceleration,
     base_inertia,
     float_freely,
 )
-from uvms_dynamics.vehicle import vehicle_from_data
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 

@@ -10,13 +10,13 @@ from random_vehicles import REFERENCE
 from scipy.integrate import solve_ivp
 from scipy.optimize import linprog
 
+from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import (
     build_model,
     coupling_wrench,
     end_effector,
     end_effector_jacobian,
     inverse_dynamics,
-    load_vehicle,
     mass_matrix,
     quat_multiply,
     quat_to_matrix,

@@ -4,17 +4,19 @@ import numpy as np
 import pytest
 from random_vehicles import REFERENCE
 
-from uvms_dynamics import Plant, PlantConfig, load_vehicle, quat_to_matrix
-from uvms_dynamics.geodesy import geodetic_to_ned
-from uvms_dynamics.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
-from uvms_dynamics.sensors import SensorSuite
-from uvms_dynamics.sensors.dvl import DvlSensor
-from uvms_dynamics.sensors.encoders import EncoderSensor
-from uvms_dynamics.sensors.gps import GpsSensor
-from uvms_dynamics.sensors.imu import ImuSensor
-from uvms_dynamics.sensors.mounting import Trajectory
-from uvms_dynamics.sensors.pressure import PressureSensor
-from uvms_dynamics.signals import to_nanoseconds
+from uvms_core.geodesy import geodetic_to_ned
+from uvms_core.signals import to_nanoseconds
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import quat_to_matrix
+from uvms_dynamics.kernels.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
+from uvms_dynamics.simulation import Plant, PlantConfig
+from uvms_dynamics.simulation.sensors import SensorSuite
+from uvms_dynamics.simulation.sensors.dvl import DvlSensor
+from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
+from uvms_dynamics.simulation.sensors.gps import GpsSensor
+from uvms_dynamics.simulation.sensors.imu import ImuSensor
+from uvms_dynamics.simulation.sensors.mounting import Trajectory
+from uvms_dynamics.simulation.sensors.pressure import PressureSensor
 
 PERIOD = 10_000_000  # ns
 ENVIRONMENT, SENSORS = REFERENCE.environment, REFERENCE.sensors

@@ -4,17 +4,11 @@ import numpy as np
 import pytest
 from random_vehicles import random_motion, random_vehicle
 
-from uvms_dynamics import (
-    PlantConfig,
-    advance_batch,
-    load_vehicle,
-    make_state,
-    make_system,
-    simulate,
-)
-from uvms_dynamics.errors import ConfigError
-from uvms_dynamics.integrator import advance, make_scratch
-from uvms_dynamics.plant.config import initial_state
+from uvms_core.errors import ConfigError
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.simulation import PlantConfig, advance_batch, make_state, make_system, simulate
+from uvms_dynamics.simulation.integrator import advance, make_scratch
+from uvms_dynamics.simulation.plant.config import initial_state
 
 STEP, STEPS = 0.002, 20
 CURRENT = np.array([0.3, -0.2, 0.1])

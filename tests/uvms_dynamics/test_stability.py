@@ -8,19 +8,27 @@ from hypothesis import strategies as st
 from random_vehicles import changed, random_vehicle
 from scipy.linalg import eigh
 
-from uvms_dynamics import PlantConfig, build_model, load_vehicle, mass_matrix
-from uvms_dynamics.integrator import JOINTS, QUATERNION, VELOCITY, System, advance, make_scratch
-from uvms_dynamics.plant.config import initial_state
-from uvms_dynamics.plant.operating_points import AXES, operating_points
-from uvms_dynamics.plant.stability import (
+from uvms_core.vehicle import load_vehicle, vehicle_from_data
+from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.integrator import (
+    JOINTS,
+    QUATERNION,
+    VELOCITY,
+    System,
+    advance,
+    make_scratch,
+)
+from uvms_dynamics.simulation.plant.config import initial_state
+from uvms_dynamics.simulation.plant.operating_points import AXES, operating_points
+from uvms_dynamics.simulation.plant.stability import (
     amplification,
     cause_of,
     greatest_step,
     jacobian,
     stable_steps,
 )
-from uvms_dynamics.thrusters import build_thrusters
-from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_dynamics.simulation.thrusters import build_thrusters
 
 REAL, IMAGINARY = 2.785293563405282, np.sqrt(8.0)
 """Ends of the region on its axes (Hairer and Wanner 1996, sec. IV.2): R(-x) = 1 and |R(iy)| = 1."""

@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from random_vehicles import REFERENCE
 
+from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import build_model, inverse_dynamics
-from uvms_dynamics.vehicle import vehicle_from_data
 
 LENGTH, STATIONS = 0.5, np.array([1, 2, 3, 4, 6, 8, 12, 16, 24, 32])
 PIECES = 4000

@@ -5,6 +5,8 @@ import pytest
 from random_vehicles import REFERENCE, random_motion, random_vehicle
 from urdf_chains import as_urdf, real_vehicle
 
+from uvms_core.errors import VehicleFileError
+from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import (
     build_model,
     end_effector,
@@ -13,9 +15,7 @@ from uvms_dynamics import (
     mass_matrix,
     restoring_wrench,
 )
-from uvms_dynamics.errors import VehicleFileError
-from uvms_dynamics.readable import kinematics, newton_euler
-from uvms_dynamics.vehicle import vehicle_from_data
+from uvms_dynamics.numpy_reference import kinematics, newton_euler
 
 CASES = [random_vehicle(31, 1), random_vehicle(32, 4), random_vehicle(33, 7)]
 EXACT = {"rtol": 1e-12, "atol": 1e-10}

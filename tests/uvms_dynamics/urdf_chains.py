@@ -1,21 +1,16 @@
 """Vehicles whose joints are placed as URDF places them."""
 
-from pathlib import Path
-
 import numpy as np
 
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.description.urdf import matrix_to_rpy
-from uvms_dynamics.rotations import skew
-from uvms_dynamics.vehicle import Vehicle, vehicle_from_data
-from uvms_dynamics.vehicle.frames import IDENTITY, compose, distal_pose, mounting_pose
-
-CONFIG = Path(__file__).parents[2] / "bringup" / "config"
+from uvms_core.description.urdf import matrix_to_rpy
+from uvms_core.vehicle import Vehicle, load_vehicle, vehicle_from_data
+from uvms_core.vehicle.frames import IDENTITY, compose, distal_pose, mounting_pose
+from uvms_dynamics.kernels.rotations import skew
 
 
 def real_vehicle(**overrides) -> Vehicle:
     """The BlueROV2 with its arm."""
-    return load_vehicle(CONFIG / "bluerov2_alpha5.yaml", overrides)
+    return load_vehicle("bluerov2_alpha5", overrides)
 
 
 def as_urdf(vehicle: Vehicle) -> Vehicle:

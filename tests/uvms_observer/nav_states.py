@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from uvms_dynamics.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
+from uvms_dynamics.kernels.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
 from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import SIZE, NavigationState
 

@@ -9,8 +9,8 @@ from dataclasses import dataclass, field
 import numpy as np
 from scipy.spatial.transform import Rotation
 
-from uvms_dynamics.geodesy import ned_to_geodetic
-from uvms_dynamics.signals import DvlSample, GpsSample, ImuSample, PressureSample, to_nanoseconds
+from uvms_core.geodesy import ned_to_geodetic
+from uvms_core.signals import DvlSample, GpsSample, ImuSample, PressureSample, to_nanoseconds
 
 NONE = np.zeros((3, 3))
 

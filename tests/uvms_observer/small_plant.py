@@ -8,10 +8,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uvms_core.signals import JointStates, Odometry, Wrench, to_nanoseconds
 from uvms_dynamics import build_model, forward_dynamics, mass_matrix
-from uvms_dynamics.rotations import quat_multiply, quat_to_matrix
-from uvms_dynamics.signals import JointStates, Odometry, Wrench, to_nanoseconds
-from uvms_dynamics.thrusters import thruster_matrix
+from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix
+from uvms_dynamics.model import thruster_matrix
 
 PERIOD = 0.05
 SUBSTEPS = 10

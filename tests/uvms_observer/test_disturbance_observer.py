@@ -4,19 +4,7 @@ import numpy as np
 import pytest
 from small_plant import PERIOD, SmallPlant, run, steered
 
-from uvms_dynamics import (
-    Plant,
-    PlantConfig,
-    build_model,
-    coupling_wrench,
-    hull_bias_wrench,
-    inverse_dynamics,
-    load_vehicle,
-    mass_matrix,
-    restoring_wrench,
-    thruster_matrix,
-)
-from uvms_dynamics.signals import (
+from uvms_core.signals import (
     JointCommand,
     JointStates,
     Odometry,
@@ -24,7 +12,18 @@ from uvms_dynamics.signals import (
     Wrench,
     to_nanoseconds,
 )
-from uvms_dynamics.vehicle.loader import vehicle_from_data
+from uvms_core.vehicle import load_vehicle
+from uvms_core.vehicle.loader import vehicle_from_data
+from uvms_dynamics import (
+    build_model,
+    coupling_wrench,
+    hull_bias_wrench,
+    inverse_dynamics,
+    mass_matrix,
+    restoring_wrench,
+    thruster_matrix,
+)
+from uvms_dynamics.simulation import Plant, PlantConfig
 from uvms_observer import DisturbanceObserver, ObserverConfig
 
 VEHICLE = load_vehicle()

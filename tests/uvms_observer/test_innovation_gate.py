@@ -2,7 +2,7 @@
 
 import pytest
 
-from uvms_observer.navigation.gate import InnovationGate, Tally
+from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 
 SECOND = 1_000_000_000
 

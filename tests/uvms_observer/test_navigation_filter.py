@@ -8,8 +8,8 @@ from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 from sensor_truth import Motion, Rig, Waves
 
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.signals import to_nanoseconds
+from uvms_core.signals import to_nanoseconds
+from uvms_core.vehicle import load_vehicle
 from uvms_observer import NavigationConfig, NavigationFilter, NotAlignedError
 
 VEHICLE = load_vehicle()

@@ -5,8 +5,10 @@ import pytest
 from scipy.spatial.transform import Rotation
 from scipy.stats import chi2
 
-from uvms_dynamics import Plant, PlantConfig, load_vehicle, thruster_matrix
-from uvms_dynamics.signals import JointCommand, ThrusterCommand, Wrench
+from uvms_core.signals import JointCommand, ThrusterCommand, Wrench
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import thruster_matrix
+from uvms_dynamics.simulation import Plant, PlantConfig
 from uvms_observer import DisturbanceObserver, NavigationConfig, NavigationFilter, ObserverConfig
 
 VEHICLE = load_vehicle()

@@ -7,10 +7,10 @@ import pytest
 from sensor_truth import Motion, Rig, Waves
 from small_plant import SmallPlant
 
-from uvms_dynamics import load_vehicle
-from uvms_dynamics.config import validated
-from uvms_dynamics.errors import ConfigError, SignalError
-from uvms_dynamics.signals import Wrench
+from uvms_core.config import validated
+from uvms_core.errors import ConfigError, SignalError
+from uvms_core.signals import Wrench
+from uvms_core.vehicle import load_vehicle
 from uvms_observer import DisturbanceObserver, NavigationConfig, NavigationFilter, ObserverConfig
 
 VEHICLE = load_vehicle()

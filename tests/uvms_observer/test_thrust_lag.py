@@ -2,7 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics import load_vehicle, thruster_matrix
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import thruster_matrix
 from uvms_observer.disturbance.thrust_lag import ThrustLag
 
 VEHICLE = load_vehicle()

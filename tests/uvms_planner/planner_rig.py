@@ -5,11 +5,11 @@ from dataclasses import dataclass
 import numpy as np
 import yaml
 
-from uvms_dynamics import Vehicle, dump_vehicle, load_vehicle
-from uvms_dynamics.signals import JointStates, Odometry, to_nanoseconds
-from uvms_dynamics.vehicle.loader import vehicle_from_data
+from uvms_core.end_effector_path import PathSample
+from uvms_core.signals import JointStates, Odometry, to_nanoseconds
+from uvms_core.vehicle import Vehicle, dump_vehicle, load_vehicle
+from uvms_core.vehicle.loader import vehicle_from_data
 from uvms_planner import MotionPlanner, PathPhase, PathSpec, PlannerConfig
-from uvms_planner.path import PathSample
 from uvms_planner.projection import tool_pose
 from uvms_planner.solver import StepSolver
 

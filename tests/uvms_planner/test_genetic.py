@@ -4,7 +4,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from planner_rig import START, solver_of, target_near
 
-from uvms_dynamics.rng import generator
+from uvms_core.rng import generator
 from uvms_planner.fitness import cost, judge
 from uvms_planner.genetic import (
     breed,

@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
-from uvms_dynamics.signals import PathGoal
-from uvms_planner import EndEffectorPath
-from uvms_planner.path import JoinedPath
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.signals import PathGoal
+from uvms_planner.joined_path import JoinedPath
 
 NONE = np.zeros((0, 4))
 TIMES = np.array([0.0, 1.0, 2.5, 4.0, 6.0])

@@ -3,8 +3,9 @@ import pytest
 from planner_rig import LEVEL, START, START_DEG, reference_vehicle
 from pydantic import ValidationError
 
+from uvms_core.end_effector_path import EndEffectorPath
 from uvms_dynamics import build_model, end_effector, end_effector_jacobian
-from uvms_planner import EndEffectorPath, PathPhase, PathSpec, figure_9
+from uvms_planner import PathPhase, PathSpec, figure_9
 from uvms_planner.constraints import free_attitude
 from uvms_planner.limits import JointLimits
 

@@ -13,10 +13,11 @@ from planner_rig import (
 )
 from scipy.spatial.transform import Rotation
 
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.errors import SignalError
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 from uvms_dynamics import end_effector
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
-from uvms_planner import EndEffectorPath, MotionPlanner, PathPhase, PathSpec, PlannerConfig
+from uvms_planner import MotionPlanner, PathPhase, PathSpec, PlannerConfig
 
 NONE = np.zeros((0, 4))
 

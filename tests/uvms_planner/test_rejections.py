@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from planner_rig import drive, reference_vehicle, short_figure_9
 from scipy.spatial.transform import Rotation
 
-from uvms_dynamics.signals import JointGoal, PathGoal
+from uvms_core.signals import JointGoal, PathGoal
 from uvms_planner import GoalRejected, MotionPlanner, PlannerConfig
 
 NONE = np.zeros((0, 4))

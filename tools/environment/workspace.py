@@ -8,6 +8,7 @@ PREFIX_HOOK = (
     "import os, sys; os.environ['AMENT_PREFIX_PATH'] = os.pathsep.join(dict.fromkeys("
     "[sys.prefix] + os.environ.get('AMENT_PREFIX_PATH', '').split(os.pathsep))).strip(os.pathsep)\n"
 )
+_ENTRIES = "%s-*.dist-info/entry_points.txt"
 SHARED = ("package.xml", "config", "launch")
 
 
@@ -46,10 +47,9 @@ def _executables(prefix, name):
 
 
 def _console_scripts(prefix, name):
-    listing = next(site_packages(prefix).glob("%s-*.dist-info/entry_points.txt" % name))
-    parser = configparser.ConfigParser()
-    parser.read(str(listing))
-    return list(parser["console_scripts"])
+    parser = configparser.ConfigParser(delimiters=("=",))
+    parser.read(str(entry) for entry in site_packages(prefix).glob(_ENTRIES % name))
+    return list(parser["console_scripts"]) if "console_scripts" in parser else []
 
 
 def _empty(folder):

@@ -14,16 +14,16 @@ from unique_identifier_msgs.msg import UUID
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.recorder import Recorder, Write
 from uvms_bringup.ros.state_publisher import StateBroadcaster
-from uvms_dynamics import diagnostics, topics
-from uvms_dynamics.messages import from_message, to_message
-from uvms_dynamics.ros.convert import action_class, message_class, to_ros
-from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.ros.request import Request
-from uvms_dynamics.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
-from uvms_dynamics.ros.spin import Spinner
-from uvms_dynamics.signals import JointGoal, PathGoal, to_seconds
-from uvms_dynamics.topics import Topic
-from uvms_dynamics.vehicle import Vehicle
+from uvms_core import diagnostics, topics
+from uvms_core.messages import from_message, to_message
+from uvms_core.ros.convert import action_class, message_class, to_ros
+from uvms_core.ros.node import qos_profile
+from uvms_core.ros.request import Request
+from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
+from uvms_core.ros.spin import Spinner
+from uvms_core.signals import JointGoal, PathGoal, to_seconds
+from uvms_core.topics import Topic
+from uvms_core.vehicle import Vehicle
 
 START_PATIENCE_S = 180.0
 """Wall time for all nodes to come up and find each other; the first start compiles kernels."""
@@ -87,7 +87,7 @@ class Conductor(Node):
 
     def lead(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
         """Bring the run to its first tick, send the goal and let time go."""
-        self._recorder.on_clock = spinner.breathe
+        self._recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
         self._call(spinner, self._start, Trigger.Request(), "plant/start")
         self._await(

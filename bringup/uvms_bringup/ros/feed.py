@@ -11,11 +11,11 @@ from rclpy.node import Node
 from rclpy.task import Future
 from std_srvs.srv import Trigger
 
+from uvms_analysis.log.compare import compare, table
+from uvms_analysis.log.read import RUN, RunLog
+from uvms_analysis.log.schema import qos_yaml
+from uvms_analysis.log.writer import LogWriter
 from uvms_bringup.errors import RunError, ScenarioError
-from uvms_bringup.log.compare import compare, table
-from uvms_bringup.log.read import RUN, RunLog
-from uvms_bringup.log.schema import qos_yaml
-from uvms_bringup.log.writer import LogWriter
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
@@ -24,15 +24,15 @@ from uvms_bringup.ros.recorder import stamp_of
 from uvms_bringup.ros.replay import Metronome
 from uvms_bringup.ros.schedule import TickOf, TickRecord, schedule
 from uvms_bringup.scenario import Scenario
-from uvms_dynamics import topics
-from uvms_dynamics.config import validated
-from uvms_dynamics.messages import to_message
-from uvms_dynamics.ros.convert import action_class, message_class, to_ros
-from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.ros.request import Request
-from uvms_dynamics.ros.roll_call import RollCall
-from uvms_dynamics.ros.spin import Spinner, start
-from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
+from uvms_core import topics
+from uvms_core.config import validated
+from uvms_core.messages import to_message
+from uvms_core.ros.convert import action_class, message_class, to_ros
+from uvms_core.ros.node import qos_profile
+from uvms_core.ros.request import Request
+from uvms_core.ros.roll_call import RollCall
+from uvms_core.ros.spin import Spinner, start
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 
 START_PATIENCE_S = 90.0
 TICK_PATIENCE_S = 5.0

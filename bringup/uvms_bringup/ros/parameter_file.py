@@ -7,9 +7,9 @@ import yaml
 
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import Scenario
-from uvms_dynamics import topics
-from uvms_dynamics.config import Config
-from uvms_dynamics.ros.parameters import flatten
+from uvms_core import topics
+from uvms_core.config import Config
+from uvms_core.ros.parameters import flatten
 
 
 def node_parameters(

@@ -8,23 +8,24 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from uvms_bringup.errors import RunError
-from uvms_dynamics import topics
 
 PATIENCE_S = 10.0
 """Wall time that a node gets to end by itself."""
 
 
-def node_module(node: str) -> str:
-    """The module of a node's executable."""
-    if node not in topics.NODES:
-        raise RunError(f"unknown node {node!r}; choose one of {', '.join(topics.NODES)}")
-    return f"{topics.NODES[node].package}.nodes.{node}"
+def node_command(
+    role: str, parameter_file: Path, namespace: str = "", node: str | None = None
+) -> list[str]:
+    """The command that starts the node of a role.
 
-
-def node_command(node: str, parameter_file: Path, namespace: str = "") -> list[str]:
-    """The command that starts one node."""
-    command = [sys.executable, "-m", node_module(node), "--ros-args"]
-    command += ["--params-file", str(parameter_file)]
+    Args:
+        role: name of the node in the graph.
+        parameter_file: its parameters, in ROS's YAML form.
+        namespace: "" is the root.
+        node: name or `module:Class` of the node that fills the role; None: ours.
+    """
+    command = [sys.executable, "-m", "uvms_core.ros.main", node or role]
+    command += ["--ros-args", "-r", f"__node:={role}", "--params-file", str(parameter_file)]
     return command + (["-r", f"__ns:={namespace}"] if namespace else [])
 
 

@@ -5,12 +5,12 @@ from struct import unpack_from
 
 from rclpy.node import Node
 
-from uvms_bringup.log.schema import qos_yaml
-from uvms_dynamics import topics
-from uvms_dynamics.ros.convert import message_class
-from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.signals import NANOSECONDS
-from uvms_dynamics.topics import Topic
+from uvms_analysis.log.schema import qos_yaml
+from uvms_core import topics
+from uvms_core.ros.convert import message_class
+from uvms_core.ros.node import qos_profile
+from uvms_core.signals import NANOSECONDS
+from uvms_core.topics import Topic
 
 Write = Callable[[str, str, str, int, bytes], None]
 

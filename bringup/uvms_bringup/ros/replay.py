@@ -11,16 +11,17 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 from rclpy.task import Future
 
-from uvms_bringup.errors import LogError, RunError
-from uvms_bringup.log.read import RunLog
-from uvms_bringup.log.schema import qos_from_yaml
+from uvms_analysis.errors import LogError
+from uvms_analysis.log.read import RunLog
+from uvms_analysis.log.schema import qos_from_yaml
+from uvms_bringup.errors import RunError
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.ros.recorder import stamp_of
-from uvms_dynamics import topics
-from uvms_dynamics.ros.convert import interface_class
-from uvms_dynamics.ros.node import qos_profile
-from uvms_dynamics.ros.spin import Spinner, start
-from uvms_dynamics.signals import to_seconds
+from uvms_core import topics
+from uvms_core.ros.convert import interface_class
+from uvms_core.ros.node import qos_profile
+from uvms_core.ros.spin import Spinner, start
+from uvms_core.signals import to_seconds
 
 DISCOVERY_S = 3.5
 """Wall time that others get at least to find the publishers: DDS announces itself every 3 s."""

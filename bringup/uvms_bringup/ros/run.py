@@ -3,7 +3,6 @@
 import os
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from importlib import import_module
 from pathlib import Path
 
 import rclpy
@@ -14,11 +13,12 @@ from uvms_bringup.errors import RunError
 from uvms_bringup.pace import Pace
 from uvms_bringup.ros.conductor import Conductor
 from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
-from uvms_bringup.ros.processes import NodeProcesses, environment, node_command, node_module
+from uvms_bringup.ros.processes import NodeProcesses, environment, node_command
 from uvms_bringup.ros.recorder import Write
 from uvms_bringup.scenario import Scenario
-from uvms_dynamics.ros.spin import Spinner, start
-from uvms_dynamics.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core import registry
+from uvms_core.ros.spin import Spinner, start
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 
 Progress = Callable[[int, str], None]
 
@@ -100,9 +100,8 @@ def _composed(
 
 def make_node(node: str, parameters: dict) -> Node:
     """A node of the graph inside this process, with its parameters."""
-    module = import_module(node_module(node))
-    name = "".join(part.capitalize() for part in node.split("_")) + "Node"
+    make = registry.load(registry.NODES, node)
     overrides = [Parameter(key, value=value) for key, value in parameters.items()]
     if not rclpy.ok():
         raise RunError("ROS was shut down before the nodes were made")
-    return getattr(module, name)(parameter_overrides=overrides)
+    return make(parameter_overrides=overrides)

@@ -3,10 +3,10 @@
 from collections import Counter
 from dataclasses import dataclass, field
 
-from uvms_bringup.errors import LogError
-from uvms_bringup.log.read import RunLog
+from uvms_analysis.errors import LogError
+from uvms_analysis.log.read import RunLog
 from uvms_bringup.ros.recorder import stamp_of
-from uvms_dynamics import topics
+from uvms_core import topics
 
 Input = tuple[str, bytes]
 

@@ -9,18 +9,18 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.publisher import Publisher
 
-from uvms_dynamics import topics
-from uvms_dynamics.cdr import codec
-from uvms_dynamics.description import StateFrames, description_message, static_message
-from uvms_dynamics.errors import UvmsError
-from uvms_dynamics.gate import Same, Tick, TickGate
-from uvms_dynamics.messages import from_message
-from uvms_dynamics.ros.convert import message_class
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import NodeConfig, qos_profile
-from uvms_dynamics.ros.parameters import declare_config
-from uvms_dynamics.topics import Topic
-from uvms_dynamics.vehicle import Vehicle, load_vehicle
+from uvms_core import topics
+from uvms_core.cdr import codec
+from uvms_core.description import StateFrames, description_message, static_message
+from uvms_core.errors import UvmsError
+from uvms_core.messages import from_message
+from uvms_core.ros.convert import message_class
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import NodeConfig, qos_profile
+from uvms_core.ros.parameters import declare_config
+from uvms_core.tick_gate import Same, Tick, TickGate
+from uvms_core.topics import Topic
+from uvms_core.vehicle import Vehicle, load_vehicle
 
 SOURCES = (topics.ODOMETRY, topics.JOINT_STATES)
 """What /tf is made from."""
@@ -93,7 +93,7 @@ def _publish_once(node: Node, topic: Topic, message: dict[str, Any]) -> Publishe
 
 def main(args: list[str] | None = None) -> int:
     """`ros2 run uvms_bringup state_publisher`."""
-    return main_of(StatePublisherNode, __doc__ or "", (), args)
+    return main_of(StatePublisherNode, args)
 
 
 if __name__ == "__main__":

@@ -5,7 +5,7 @@ import numpy as np
 from uvms_control.config import ArmControlConfig
 from uvms_control.errors import ControlSetupError
 from uvms_control.s_surface import SSurface
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 
 def sampled_gains(bandwidth: float, damping_ratio: float, dt: float) -> tuple[float, float]:

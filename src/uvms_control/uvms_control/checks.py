@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import Array
+from uvms_core.errors import SignalError
+from uvms_core.signals import Array
 
 
 def checked(name: str, value: Array, shape: tuple[int, ...]) -> Array:

@@ -6,8 +6,8 @@ import numpy as np
 
 from uvms_control.config import CompensationConfig
 from uvms_control.reference import ReferenceSample
+from uvms_core.signals import Array, Odometry
 from uvms_dynamics import end_effector, end_effector_jacobian
-from uvms_dynamics.signals import Array, Odometry
 
 # Gauss-Newton steps: the first leaves 1 % or so to damping and curvature, the second nothing.
 ITERATIONS = 2

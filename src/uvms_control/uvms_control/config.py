@@ -4,7 +4,7 @@ from typing import Annotated
 
 from pydantic import Field
 
-from uvms_dynamics.config import Config
+from uvms_core.config import Config
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]

@@ -10,16 +10,9 @@ from uvms_control.reference import ReferenceSample, check_reference, sample_refe
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
 from uvms_control.vehicle_data import effort_limits, joint_limits
-from uvms_dynamics import (
-    Vehicle,
-    build_model,
-    inverse_dynamics,
-    joint_passive_torque,
-    mass_matrix,
-)
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.freshness import check_age
-from uvms_dynamics.signals import (
+from uvms_core.errors import SignalError
+from uvms_core.freshness import check_age
+from uvms_core.signals import (
     Array,
     JointCommand,
     JointStates,
@@ -28,6 +21,8 @@ from uvms_dynamics.signals import (
     Wrench,
     to_seconds,
 )
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import build_model, inverse_dynamics, joint_passive_torque, mass_matrix
 
 
 class Controller:

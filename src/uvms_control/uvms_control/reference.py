@@ -11,8 +11,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_control.checks import checked
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.rotations import (
+from uvms_core.errors import SignalError
+from uvms_core.signals import Array, Reference, to_nanoseconds, to_seconds
+from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
     quat_to_matrix,
@@ -20,7 +21,6 @@ from uvms_dynamics.rotations import (
     rotation_vector_to_quat,
     skew,
 )
-from uvms_dynamics.signals import Array, Reference, to_nanoseconds, to_seconds
 
 SMALL_ANGLE = 1e-4  # rad; below it the series of the right Jacobian are exact to rounding
 

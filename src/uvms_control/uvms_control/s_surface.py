@@ -11,7 +11,7 @@ import numpy as np
 from scipy.special import bernoulli
 
 from uvms_control.errors import ControlSetupError
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 
 @dataclass(frozen=True)

@@ -5,14 +5,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_control.reference import ReferenceSample
-from uvms_dynamics.rotations import (
+from uvms_core.signals import Array, Odometry
+from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
     quat_to_matrix,
     quat_to_rotation_vector,
     skew,
 )
-from uvms_dynamics.signals import Array, Odometry
 
 
 @dataclass(frozen=True)

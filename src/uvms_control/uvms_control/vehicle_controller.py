@@ -5,8 +5,8 @@ import numpy as np
 from uvms_control.config import VehicleControlConfig
 from uvms_control.s_surface import SSurface
 from uvms_control.tracking_error import TrackingError
+from uvms_core.signals import Array, Odometry
 from uvms_dynamics import hull_bias_wrench
-from uvms_dynamics.signals import Array, Odometry
 
 # The integral rests while the S-surface's argument is beyond this: u is then above tanh(1) = 0.76.
 INTEGRATION_RANGE = 2.0

@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics import Vehicle
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
 
 
 def joint_limits(vehicle: Vehicle) -> tuple[Array, Array]:

@@ -1,7 +1,8 @@
-"""Vehicle, kinematics, dynamics, thrusters, sensors and plant of the vehicle-manipulator system."""
+"""Dynamics of an underwater vehicle with an arm: rigid bodies, water, simulation."""
 
-from uvms_dynamics import compile_cache  # first: it says where numba keeps what it compiles
-from uvms_dynamics.integrator import System, make_state, make_system
+from typing import Any
+
+from uvms_core.moved import moved
 from uvms_dynamics.kernels import (
     coupling_wrench,
     end_effector,
@@ -13,10 +14,7 @@ from uvms_dynamics.kernels import (
     mass_matrix,
     restoring_wrench,
 )
-from uvms_dynamics.model import Model, build_model
-from uvms_dynamics.plant import Plant, PlantConfig, PlantTruth, SensorFrame
-from uvms_dynamics.rng import generator
-from uvms_dynamics.rotations import (
+from uvms_dynamics.kernels.rotations import (
     matrix_to_quat,
     quat_conjugate,
     quat_multiply,
@@ -28,35 +26,19 @@ from uvms_dynamics.rotations import (
     rpy_to_quat,
     skew,
 )
-from uvms_dynamics.simulation import advance_batch, simulate
-from uvms_dynamics.thrusters import build_thrusters, configuration_matrix, thruster_matrix
-from uvms_dynamics.vehicle import Vehicle, dump_vehicle, load_vehicle
+from uvms_dynamics.model import Model, build_model, configuration_matrix, thruster_matrix
 
 __all__ = [
     "Model",
-    "Plant",
-    "PlantConfig",
-    "PlantTruth",
-    "SensorFrame",
-    "System",
-    "Vehicle",
-    "advance_batch",
     "build_model",
-    "build_thrusters",
-    "compile_cache",
     "configuration_matrix",
     "coupling_wrench",
-    "dump_vehicle",
     "end_effector",
     "end_effector_jacobian",
     "forward_dynamics",
-    "generator",
     "hull_bias_wrench",
     "inverse_dynamics",
     "joint_passive_torque",
-    "load_vehicle",
-    "make_state",
-    "make_system",
     "mass_matrix",
     "matrix_to_quat",
     "quat_conjugate",
@@ -68,7 +50,32 @@ __all__ = [
     "restoring_wrench",
     "rotation_vector_to_quat",
     "rpy_to_quat",
-    "simulate",
     "skew",
     "thruster_matrix",
 ]
+
+_MOVED = {
+    "Vehicle": "uvms_core.vehicle",
+    "dump_vehicle": "uvms_core.vehicle",
+    "load_vehicle": "uvms_core.vehicle",
+    "generator": "uvms_core.rng",
+    "signals": "uvms_core",
+    "topics": "uvms_core",
+    "diagnostics": "uvms_core",
+    "compile_cache": "uvms_dynamics.kernels",
+    "Plant": "uvms_dynamics.simulation",
+    "PlantConfig": "uvms_dynamics.simulation",
+    "PlantTruth": "uvms_dynamics.simulation",
+    "SensorFrame": "uvms_dynamics.simulation",
+    "System": "uvms_dynamics.simulation",
+    "advance_batch": "uvms_dynamics.simulation",
+    "build_thrusters": "uvms_dynamics.simulation",
+    "make_state": "uvms_dynamics.simulation",
+    "make_system": "uvms_dynamics.simulation",
+    "simulate": "uvms_dynamics.simulation",
+}
+"""Names that had their home here until version 0.2, and where it is now."""
+
+
+def __getattr__(name: str) -> Any:
+    return moved(__name__, name, _MOVED)

@@ -5,8 +5,8 @@ from typing import Any
 
 import numpy as np
 
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import Array
+from uvms_core.errors import SignalError
+from uvms_core.signals import Array
 
 QUATERNION_TOLERANCE = 1e-3
 """A quaternion from outside may be off unit length by this much."""

@@ -1,6 +1,6 @@
-"""Errors of the observer package; bad signals raise `uvms_dynamics.errors.SignalError`."""
+"""Errors of the observer package; bad signals raise `uvms_core.errors.SignalError`."""
 
-from uvms_dynamics.errors import UvmsError
+from uvms_core.errors import UvmsError
 
 
 class ObserverError(UvmsError):

@@ -1,5 +1,8 @@
 """Motion planning for vehicle and arm together, paper sec. 3."""
 
+from typing import Any
+
+from uvms_core.moved import moved
 from uvms_planner.config import (
     FitnessConfig,
     GeneticConfig,
@@ -8,13 +11,11 @@ from uvms_planner.config import (
     ProjectionConfig,
 )
 from uvms_planner.errors import GoalRejected, PlannerError
-from uvms_planner.path import EndEffectorPath, PathSample
 from uvms_planner.path_spec import PathPhase, PathSpec, figure_9
 from uvms_planner.planner import MotionPlanner
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
 
 __all__ = [
-    "EndEffectorPath",
     "FitnessConfig",
     "GeneticConfig",
     "GoalFeedback",
@@ -23,7 +24,6 @@ __all__ = [
     "LimitsConfig",
     "MotionPlanner",
     "PathPhase",
-    "PathSample",
     "PathSpec",
     "PlannerConfig",
     "PlannerError",
@@ -32,3 +32,12 @@ __all__ = [
     "StepDiagnostics",
     "figure_9",
 ]
+
+_MOVED = {
+    "EndEffectorPath": "uvms_core.end_effector_path",
+    "PathSample": "uvms_core.end_effector_path",
+}
+
+
+def __getattr__(name: str) -> Any:
+    return moved(__name__, name, _MOVED)

@@ -4,7 +4,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from uvms_dynamics.config import Config
+from uvms_core.config import Config
 
 Method = Literal["genetic", "least_norm", "arm_only"]
 

@@ -1,6 +1,6 @@
 """The planner's branch of the exception tree."""
 
-from uvms_dynamics.errors import UvmsError
+from uvms_core.errors import UvmsError
 
 
 class PlannerError(UvmsError):

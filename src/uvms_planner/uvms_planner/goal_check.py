@@ -3,13 +3,14 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from uvms_core.end_effector_path import EndEffectorPath, PathSample
+from uvms_core.signals import Array, PathGoal
 from uvms_dynamics.kernels.jit import kernel
-from uvms_dynamics.rotations import quat_to_matrix
-from uvms_dynamics.signals import Array, PathGoal
+from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
+from uvms_planner.joined_path import JoinedPath
 from uvms_planner.linear import copy_into
-from uvms_planner.path import EndEffectorPath, JoinedPath, PathSample
 from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project, within_tolerance
 from uvms_planner.solver import StepSolver

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_dynamics.signals import Array, JointGoal, to_nanoseconds, to_seconds
+from uvms_core.signals import Array, JointGoal, to_nanoseconds, to_seconds
 from uvms_planner.errors import GoalRejected
 from uvms_planner.limits import JointLimits
 from uvms_planner.problem import VEHICLE

@@ -4,8 +4,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_dynamics import Vehicle
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
 from uvms_planner.config import LimitsConfig
 from uvms_planner.problem import VEHICLE
 

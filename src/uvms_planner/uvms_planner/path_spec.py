@@ -5,8 +5,8 @@ from typing import Annotated
 import numpy as np
 from pydantic import Field
 
-from uvms_dynamics.config import Config
-from uvms_dynamics.signals import Array, PathGoal
+from uvms_core.config import Config
+from uvms_core.signals import Array, PathGoal
 
 Vector3 = Annotated[tuple[float, ...], Field(min_length=3, max_length=3)]
 

@@ -4,10 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_dynamics import Vehicle, end_effector
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.rotations import matrix_to_quat
-from uvms_dynamics.signals import (
+from uvms_core.end_effector_path import EndEffectorPath, PathSample
+from uvms_core.errors import SignalError
+from uvms_core.signals import (
     Array,
     JointGoal,
     JointStates,
@@ -17,12 +16,15 @@ from uvms_dynamics.signals import (
     to_nanoseconds,
     to_seconds,
 )
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import end_effector
+from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
 from uvms_planner.follow import FollowedStep, PathFollower
 from uvms_planner.goal_check import check_path_goal, check_reachable, check_start
+from uvms_planner.joined_path import JoinedPath
 from uvms_planner.joint_motion import JointMotion, check_joint_goal
-from uvms_planner.path import EndEffectorPath, JoinedPath, PathSample
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics

@@ -9,8 +9,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import inner
-from uvms_dynamics.signals import Array
 
 VEHICLE = 4  # x, y, z, psi stand before the joints
 

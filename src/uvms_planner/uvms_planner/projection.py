@@ -8,7 +8,7 @@ import numpy as np
 
 from uvms_dynamics import end_effector, end_effector_jacobian
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.rotations import matrix_to_quat, quat_to_rotation_vector
+from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.linear import solve_in_place
 from uvms_planner.problem import VEHICLE, yaw_quaternion
 

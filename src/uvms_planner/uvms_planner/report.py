@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from uvms_dynamics.signals import Array, Reference
+from uvms_core.signals import Array, Reference
 from uvms_planner.follow import FollowedStep
 from uvms_planner.solver import StepSolver
 

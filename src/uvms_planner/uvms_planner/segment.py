@@ -4,9 +4,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uvms_core.signals import Array, Reference
 from uvms_dynamics import Model
 from uvms_dynamics.kernels.jit import kernel
-from uvms_dynamics.signals import Array, Reference
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 

@@ -9,16 +9,17 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_dynamics import Model, Vehicle, build_model
-from uvms_dynamics.rng import generator
-from uvms_dynamics.rotations import quat_to_matrix
-from uvms_dynamics.signals import Array
+from uvms_core.end_effector_path import PathSample
+from uvms_core.rng import generator
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import Model, build_model
+from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_planner.config import PlannerConfig
 from uvms_planner.constraints import free_attitude
 from uvms_planner.fitness import judge, self_disturbance
 from uvms_planner.genetic import GeneticSettings, evolve
 from uvms_planner.limits import JointLimits, StepLimits, frozen
-from uvms_planner.path import PathSample
 from uvms_planner.problem import VEHICLE, StepProblem
 from uvms_planner.projection import project
 

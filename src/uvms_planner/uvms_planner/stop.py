@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from uvms_dynamics.signals import Array, to_nanoseconds, to_seconds
+from uvms_core.end_effector_path import PathSample
+from uvms_core.signals import Array, to_nanoseconds, to_seconds
 from uvms_planner.knot_motion import meet
 from uvms_planner.limits import PEAK_BRAKING
-from uvms_planner.path import PathSample
 from uvms_planner.projection import project
 from uvms_planner.segment import Knot, Samples, evaluate, hermite, quintic
 from uvms_planner.solver import StepSolver

@@ -19,9 +19,10 @@ from uvms_control.checks import checked
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
 from uvms_control.vehicle_data import thruster_limits
-from uvms_dynamics import Vehicle, thruster_matrix
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import Allocation, Array, ThrusterCommand, Wrench, to_seconds
+from uvms_core.errors import SignalError
+from uvms_core.signals import Allocation, Array, ThrusterCommand, Wrench, to_seconds
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import thruster_matrix
 
 # A thrust this close to its bound (share of the limit) counts as saturated.
 SATURATION_MARGIN = 1e-9

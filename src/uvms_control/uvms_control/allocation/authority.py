@@ -3,7 +3,7 @@
 import numpy as np
 from scipy.optimize import linprog
 
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 AXES = ("X", "Y", "Z", "K", "M", "N")
 # Relative size below which a part of an axis counts as outside the span of the thrusters.

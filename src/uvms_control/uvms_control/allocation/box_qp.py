@@ -13,7 +13,7 @@ set of held variables comes back, and the method ends after finitely many steps.
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 FREE, AT_LOWER, AT_UPPER = 0, -1, 1
 NOT_POSITIVE_DEFINITE, TOO_MANY_STEPS = -1, -2

@@ -11,7 +11,7 @@ import numpy as np
 
 from uvms_control.allocation.box_qp import TOO_MANY_STEPS, solve_box_qp
 from uvms_control.errors import AllocationError
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 # Each step of the active-set method holds or frees one thruster; a warm start needs a handful.
 MAX_STEPS_PER_THRUSTER = 100

@@ -1,14 +1,16 @@
 """Node `controller`: S-surface plus dynamic law for the vehicle, S-surface law for the arm."""
 
 from uvms_control import ControlConfig, Controller
-from uvms_dynamics import topics
-from uvms_dynamics.gate import Covering, Same, Tick
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import UvmsNode
+from uvms_core import topics
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import UvmsNode
+from uvms_core.tick_gate import Covering, Same, Tick
 
 
 class ControllerNode(UvmsNode):
     """odometry, joint_states, reference and disturbance in; wrench and joint command out."""
+
+    configurations = (ControlConfig,)
 
     def __init__(self, **options) -> None:
         super().__init__("controller", **options)
@@ -34,7 +36,7 @@ class ControllerNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_control controller`."""
-    return main_of(ControllerNode, __doc__ or "", (ControlConfig,), args)
+    return main_of(ControllerNode, args)
 
 
 if __name__ == "__main__":

@@ -1,15 +1,17 @@
 """Node `thrust_allocator`: the commanded wrench as thrusts within their limits."""
 
 from uvms_control import AllocatorConfig, ThrustAllocator
-from uvms_dynamics import topics
-from uvms_dynamics.gate import Same, Tick
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.signals import Wrench
+from uvms_core import topics
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import UvmsNode
+from uvms_core.signals import Wrench
+from uvms_core.tick_gate import Same, Tick
 
 
 class ThrustAllocatorNode(UvmsNode):
     """wrench_command in; thruster_command, wrench_achieved and allocation out."""
+
+    configurations = (AllocatorConfig,)
 
     def __init__(self, **options) -> None:
         super().__init__("thrust_allocator", **options)
@@ -27,7 +29,7 @@ class ThrustAllocatorNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_control thrust_allocator`."""
-    return main_of(ThrustAllocatorNode, __doc__ or "", (AllocatorConfig,), args)
+    return main_of(ThrustAllocatorNode, args)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,11 @@ import math
 from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.kernels.primitives import (
     ROUND,
-    larger,
-    size,
-    smaller,
-    two_to_the,
-    with_sign_of,
+    copysign,
+    fabs,
+    maximum,
+    minimum,
+    power_of_two,
 )
 
 # pi in parts of 33 bits, which a whole number below 2^20 multiplies without rounding: not every
@@ -53,17 +53,17 @@ def sine_cosine(x):
 @inner
 def hyperbolic_tangent(x):
     """Tanh x = -E / (2 + E) with E = exp(-2 |x|) - 1, and the sign of x."""
-    y = -2.0 * smaller(size(x), _TANH_IS_ONE)
+    y = -2.0 * minimum(fabs(x), _TANH_IS_ONE)
     k = (y * (1.0 / math.log(2.0)) + ROUND) - ROUND
     r = (y - k * _LN2_HIGH) - k * _LN2_LOW
     high = _E8 + r * (_E9 + r * (_E10 + r * (_E11 + r * (_E12 + r * _E13))))
     low = _E2 + r * (_E3 + r * (_E4 + r * (_E5 + r * (_E6 + r * (_E7 + r * high)))))
-    scale = two_to_the(k)
+    scale = power_of_two(k)
     e = (scale - 1.0) + scale * (r + (r * r) * low)
-    return with_sign_of(-e / (2.0 + e), x)
+    return copysign(-e / (2.0 + e), x)
 
 
 @inner
 def bounded(x, bound):
     """The number in -bound..bound that is nearest to x."""
-    return smaller(larger(x, -bound), bound)
+    return minimum(maximum(x, -bound), bound)

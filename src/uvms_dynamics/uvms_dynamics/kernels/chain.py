@@ -19,8 +19,8 @@ from uvms_dynamics.kernels.layout import (
     TOOL_ROTATION,
 )
 from uvms_dynamics.kernels.motion import check_joints, check_quaternion, down_in_body
+from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.kernels.spatial import cross, load3
-from uvms_dynamics.rotations import quat_to_matrix
 
 # A frame in the body frame is a row of twelve: its rotation row by row, then its origin.
 _ORIGIN = np.int64(9)

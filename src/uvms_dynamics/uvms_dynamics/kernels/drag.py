@@ -9,7 +9,7 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
-from uvms_dynamics.drag_table import FIRST_OCTAVE, LAST_OCTAVE, PER_OCTAVE_BITS
+from uvms_dynamics.kernels.drag_table import FIRST_OCTAVE, LAST_OCTAVE, PER_OCTAVE_BITS
 from uvms_dynamics.kernels.jit import OPTIONS, inner
 from uvms_dynamics.kernels.lanes import (
     LANES,
@@ -39,7 +39,7 @@ from uvms_dynamics.kernels.layout import (
     STRIPS,
     WORK_COLUMNS,
 )
-from uvms_dynamics.kernels.primitives import item, larger, put_item, root, size, smaller, zero_like
+from uvms_dynamics.kernels.primitives import fabs, item, maximum, minimum, put_item, sqrt, zero_like
 from uvms_dynamics.kernels.spatial import angular, cross, linear, load6, minus, pair, plus3, store6
 
 _LOWEST, _HIGHEST = 2.0**FIRST_OCTAVE, 2.0**LAST_OCTAVE
@@ -48,22 +48,22 @@ _BEFORE = np.int64((1023 + FIRST_OCTAVE) << PER_OCTAVE_BITS)  # 1023: the expone
 SLOT_NUMBERS = 12  # of a cylinder: velocity of its link, then force on it
 
 
-def meet_water(model, work, i, v):
-    """Drag on link i for its velocity: what it must overcome is in FORCE after `resist`."""
+def gather_drag(model, work, i, v):
+    """Drag on link i for its velocity: what it must overcome is in FORCE after `apply_drag`."""
 
 
-def resist(model, work):
+def apply_drag(model, work):
     """Add what all links must overcome to their FORCE."""
 
 
-@overload(meet_water, jit_options=OPTIONS)
+@overload(gather_drag, jit_options=OPTIONS)
 def _meet_water(model, work, i, v):
     if isinstance(work, LaneArrayType):
         return _meet_water_now
     return _leave_velocity
 
 
-@overload(resist, jit_options=OPTIONS)
+@overload(apply_drag, jit_options=OPTIONS)
 def _resist(model, work):
     if isinstance(work, LaneArrayType):
         return lambda model, work: None
@@ -139,8 +139,8 @@ def _cylinder_drag(model, block, strips, lane, v):
     u = u[0] - along * axis[0], u[1] - along * axis[1], u[2] - along * axis[2]
     turn = cross(angular(v), axis)
     sum0, sum1, sum2 = _strip_sums(model, block, strips, lane, u, turn)
-    friction = _number(model, block, AXIAL_AREA, lane) * size(along) * along
-    reynolds = _number(model, block, AXIAL_REYNOLDS, lane) * size(along)
+    friction = _number(model, block, AXIAL_AREA, lane) * fabs(along) * along
+    reynolds = _number(model, block, AXIAL_REYNOLDS, lane) * fabs(along)
     friction *= coefficient(model, np.int64(model[HULL, AXIAL]), reynolds)
     force = (
         -(u[0] * sum0 + turn[0] * sum1 + friction * axis[0]),
@@ -167,7 +167,7 @@ def _strip_sums(model, block, strips, lane, u, turn):
     for strip in range(strips):
         s = _number(model, block, STRIP + 2 * strip, lane)
         area = _number(model, block, STRIP + 2 * strip + 1, lane)
-        speed = root(larger(slip + s * (mixed + s * spin), 0.0))  # rounding may go below zero
+        speed = sqrt(maximum(slip + s * (mixed + s * spin), 0.0))  # rounding may go below zero
         k = area * (coefficient(model, first, per_speed * speed) * speed)
         sum0, sum1, sum2 = sum0 + k, sum1 + s * k, sum2 + s * (s * k)
     return sum0, sum1, sum2
@@ -202,7 +202,7 @@ def _number_of(table, block, k, lane):
 @inner
 def coefficient(model, first, reynolds):
     """C(Re), linear in each cell of `drag_table`, constant beyond its ends."""
-    inside = smaller(larger(reynolds, _LOWEST), _HIGHEST)
+    inside = minimum(maximum(reynolds, _LOWEST), _HIGHEST)
     a, b = _cell_line(model, first, inside)
     return a + b * inside
 

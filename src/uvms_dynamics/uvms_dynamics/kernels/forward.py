@@ -2,13 +2,13 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.drag import resist
+from uvms_dynamics.kernels.drag import apply_drag
 from uvms_dynamics.kernels.inertia import (
+    articulated_inertia,
     axis_force,
     inertia_to_parent,
     load_inertia,
     plus_inertia,
-    released,
     solve_inertia,
 )
 from uvms_dynamics.kernels.jit import inner, kernel
@@ -100,7 +100,7 @@ def accelerate(model, work, n, down, nu_r, wrench):
         v, k = link_velocity(model, work, i, v, rate), to_child(model, work, i, k)
         _store4(work, i, VELOCITY_PRODUCT, velocity_product(v, rate))
         set_link_force(model, work, i, v, k, none)
-    resist(model, work)
+    apply_drag(model, work)
     inertia, force = _gather(model, work, n, v)
     inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)
     a = solve_inertia(inertia, minus(_opposite(bias), force))
@@ -124,7 +124,7 @@ def _gather(model, work, n, like):
         rest = work[i, TORQUE] - force[5]
         store6(work, i, AXIS_FORCE, u)
         work[i, INVERSE], work[i, TORQUE] = inverse, rest
-        inertia = released(inertia, u, inverse)
+        inertia = articulated_inertia(inertia, u, inverse)
         force = plus(force, _times_velocity_product(inertia, work, i))
         force = plus(force, _scaled(rest * inverse, u))
         force = force_to_parent(model, work, i, force)

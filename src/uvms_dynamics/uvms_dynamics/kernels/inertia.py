@@ -35,7 +35,7 @@ def axis_force(inertia):
 
 
 @inner
-def released(inertia, u, inverse):
+def articulated_inertia(inertia, u, inverse):
     """I - U U^T / D: what is left of an inertia whose body is free to turn about z."""
     s0, s1, s2 = inverse * u[0], inverse * u[1], inverse * u[2]
     s3, s4, s5 = inverse * u[3], inverse * u[4], inverse * u[5]

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.drag import resist
+from uvms_dynamics.kernels.drag import apply_drag
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import FIRST, FORCE, HULL, INERTIA, ROTOR
@@ -91,7 +91,7 @@ def _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot):
         a = (a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2 + q_ddot[i - 1])
         inertia_force = times(load_inertia(model, i, INERTIA), a)
         set_link_force(model, work, i, v, down, inertia_force)
-    resist(model, work)
+    apply_drag(model, work)
 
 
 @inner

@@ -14,7 +14,7 @@ from uvms_dynamics.kernels.layout import (
     VISCOUS,
 )
 from uvms_dynamics.kernels.motion import check_joints
-from uvms_dynamics.kernels.primitives import larger
+from uvms_dynamics.kernels.primitives import maximum
 
 
 @kernel
@@ -43,5 +43,5 @@ def passive_torque(model, i, angle, rate):
 @inner
 def _stop(model, i, depth, speed):
     """Push of an end stop pressed in by depth, rad, at a speed, rad/s; none where depth < 0."""
-    push = model[i, STIFFNESS] * larger(depth, 0.0)
-    return push * larger(1.0 + model[i, DISSIPATION] * speed, 0.0)
+    push = model[i, STIFFNESS] * maximum(depth, 0.0)
+    return push * maximum(1.0 + model[i, DISSIPATION] * speed, 0.0)

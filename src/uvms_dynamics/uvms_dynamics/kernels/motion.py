@@ -3,7 +3,7 @@
 import numpy as np
 
 from uvms_dynamics.kernels.arithmetic import sine_cosine
-from uvms_dynamics.kernels.drag import SLOT_NUMBERS, meet_water
+from uvms_dynamics.kernels.drag import SLOT_NUMBERS, gather_drag
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.lanes import LANES
@@ -22,7 +22,7 @@ from uvms_dynamics.kernels.layout import (
     SIN_TURN,
     WORK_COLUMNS,
 )
-from uvms_dynamics.kernels.primitives import size
+from uvms_dynamics.kernels.primitives import fabs
 from uvms_dynamics.kernels.spatial import (
     angular,
     gyroscopic,
@@ -125,7 +125,7 @@ def velocity_product(v, rate):
 def set_link_force(model, work, i, v, down, more):
     """FORCE of link i: C(v) v less weight and buoyancy, and `more`; its drag follows."""
     store6(work, i, FORCE, plus(_unresisted(model, i, v, down), more))
-    meet_water(model, work, i, v)
+    gather_drag(model, work, i, v)
 
 
 @inner
@@ -140,12 +140,12 @@ def hull_damping(model, nu):
     """Linear and quadratic damping of each degree of freedom, (d_k + d_kk |x|) x; body axes."""
     d, e = load6(model, HULL, DAMPING), load6(model, HULL, QUADRATIC)
     return (
-        (d[0] + e[0] * size(nu[0])) * nu[0],
-        (d[1] + e[1] * size(nu[1])) * nu[1],
-        (d[2] + e[2] * size(nu[2])) * nu[2],
-        (d[3] + e[3] * size(nu[3])) * nu[3],
-        (d[4] + e[4] * size(nu[4])) * nu[4],
-        (d[5] + e[5] * size(nu[5])) * nu[5],
+        (d[0] + e[0] * fabs(nu[0])) * nu[0],
+        (d[1] + e[1] * fabs(nu[1])) * nu[1],
+        (d[2] + e[2] * fabs(nu[2])) * nu[2],
+        (d[3] + e[3] * fabs(nu[3])) * nu[3],
+        (d[4] + e[4] * fabs(nu[4])) * nu[4],
+        (d[5] + e[5] * fabs(nu[5])) * nu[5],
     )
 
 

@@ -60,37 +60,37 @@ def zero_like(_context, x):
 
 
 @intrinsic
-def root(_context, x):
+def sqrt(_context, x):
     """Square root."""
     return _generic((x,), _call("sqrt"))
 
 
 @intrinsic
-def size(_context, x):
+def fabs(_context, x):
     """|x|."""
     return _generic((x,), _call("fabs"))
 
 
 @intrinsic
-def with_sign_of(_context, x, y):
+def copysign(_context, x, y):
     """|x| with the sign of y."""
     return _generic((x, y), _call("copysign"))
 
 
 @intrinsic
-def larger(_context, x, y):
+def maximum(_context, x, y):
     """The larger of two; y where x is no number."""
     return _generic((x, y), _select(">"))
 
 
 @intrinsic
-def smaller(_context, x, y):
+def minimum(_context, x, y):
     """The smaller of two; y where x is no number."""
     return _generic((x, y), _select("<"))
 
 
 @intrinsic
-def two_to_the(_context, k):
+def power_of_two(_context, k):
     """2^k of a whole number -1000 < k < 1000, by way of a float64's exponent."""
 
     def emit(builder: Any, value: Any) -> Any:

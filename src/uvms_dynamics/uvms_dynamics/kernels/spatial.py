@@ -7,7 +7,7 @@ or a force (f, n) is six, linear part first, about the origin of its frame; an i
 `i` is the row of a body. Notation: Featherstone, Rigid Body Dynamics Algorithms (2008), ch. 2.
 
 Every joint turns about the z axis of its frame, which lies in the parent's at Tr(p) Rx(twist); any
-chain can be written so (`uvms_dynamics.model`), and two turns in a plane cost less than one in
+chain can be written so (`model.vehicle_table`), and two turns in a plane cost less than one in
 space.
 """
 

@@ -7,17 +7,18 @@ from typing import Any
 from pydantic import Field
 from std_srvs.srv import SetBool, Trigger
 
-from uvms_dynamics import Plant, PlantConfig, diagnostics, topics
-from uvms_dynamics.config import Config
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.ros.roll_call import NOT_UP, RollCall
-from uvms_dynamics.signals import (
+from uvms_core import diagnostics, topics
+from uvms_core.config import Config
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import UvmsNode
+from uvms_core.ros.roll_call import NOT_UP, RollCall
+from uvms_core.signals import (
     JointCommand,
     ThrusterCommand,
     to_nanoseconds,
     to_seconds,
 )
+from uvms_dynamics.simulation import Plant, PlantConfig
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
@@ -51,6 +52,11 @@ class PlantNode(UvmsNode):
 
     Services: `start` (begin, where `auto_start` is false) and `pause` (hold simulated time).
     """
+
+    configurations = (
+        PaceConfig,
+        PlantConfig,
+    )
 
     def __init__(self, **options) -> None:
         super().__init__("plant", **options)
@@ -220,7 +226,7 @@ class PlantNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_dynamics plant`."""
-    return main_of(PlantNode, __doc__ or "", (PaceConfig, PlantConfig), args)
+    return main_of(PlantNode, args)
 
 
 if __name__ == "__main__":

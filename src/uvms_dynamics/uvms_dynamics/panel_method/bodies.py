@@ -5,15 +5,15 @@ from pathlib import Path
 
 import numpy as np
 
+from uvms_core.signals import Array
+from uvms_core.vehicle import Link, Vehicle
+from uvms_core.vehicle.frames import Pose
+from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.files import load_panels
 from uvms_dynamics.panel_method.panels import Panels, with_short_edges
 from uvms_dynamics.panel_method.solids import Cylinder, Ellipsoid, Solid, parse_solid
 from uvms_dynamics.panel_method.theory import in_frame
-from uvms_dynamics.rotations import quat_to_matrix, rpy_to_quat
-from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle import Link, Vehicle
-from uvms_dynamics.vehicle.frames import Pose
 
 PANELS = 3000
 """Panels of the finest surface, unless told otherwise: seconds, and a few parts in a thousand."""

@@ -7,9 +7,9 @@ import numpy as np
 from scipy.sparse import coo_array
 from scipy.sparse.csgraph import connected_components
 
+from uvms_core.signals import Array
 from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.panels import Numbers, Panels
-from uvms_dynamics.signals import Array
 
 SMALLEST_M, LARGEST_M = 0.01, 30.0
 """Extents of a body that look like metres."""

@@ -1,6 +1,6 @@
 """Errors of the panel method."""
 
-from uvms_dynamics.errors import UvmsError
+from uvms_core.errors import UvmsError
 
 
 class PanelMethodError(UvmsError):

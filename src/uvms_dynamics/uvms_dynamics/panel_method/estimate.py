@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uvms_core.signals import Array
 from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.panels import Panels
 from uvms_dynamics.panel_method.solver import Progress, solve
-from uvms_dynamics.signals import Array
 
 NEGATIVE = 1e-3
 """A more negative eigenvalue, as a part of the largest, is no discretisation error."""

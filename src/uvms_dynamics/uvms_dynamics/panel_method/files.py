@@ -5,11 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from uvms_core.signals import Array
 from uvms_dynamics.panel_method.checks import check_closed, check_metres, check_outward
 from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.optional import optional
 from uvms_dynamics.panel_method.panels import Panels, from_corners
-from uvms_dynamics.signals import Array
 
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
 """Read by trimesh; any other format is left to capytaine."""

@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 Numbers = NDArray[np.int64]
 """Vertex numbers."""

@@ -5,9 +5,9 @@ from itertools import product
 import numpy as np
 from pydantic import TypeAdapter, ValidationError
 
+from uvms_core.signals import Array
+from uvms_core.vehicle.parts import AddedMass
 from uvms_dynamics.panel_method.errors import PanelMethodError
-from uvms_dynamics.signals import Array
-from uvms_dynamics.vehicle.parts import AddedMass
 
 DIGITS = (5, 7, 9, 12, 17)
 """Significant digits that are tried; a matrix of low rank stays semidefinite only with many."""

@@ -7,10 +7,10 @@ from typing import ClassVar
 
 import numpy as np
 
+from uvms_core.signals import Array
 from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.panels import Panels
 from uvms_dynamics.panel_method.theory import ellipsoid_added_mass, slender_cylinder_added_mass
-from uvms_dynamics.signals import Array
 
 
 @dataclass(frozen=True)

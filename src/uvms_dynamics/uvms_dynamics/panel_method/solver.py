@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 
+from uvms_core.signals import Array
 from uvms_dynamics.panel_method.checks import without_slivers
 from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.optional import optional
 from uvms_dynamics.panel_method.panels import Panels
-from uvms_dynamics.signals import Array
 
 BYTES_PER_PAIR = 64
 """Peak memory per pair of panels: two complex matrices, their real parts and a decomposition."""

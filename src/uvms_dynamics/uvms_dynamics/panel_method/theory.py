@@ -3,8 +3,8 @@
 import numpy as np
 from scipy.special import elliprd
 
-from uvms_dynamics.rotations import skew
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import skew
 
 
 def in_frame(matrix: Array, position: Array, rotation: Array) -> Array:

@@ -19,8 +19,8 @@ from typing import NamedTuple
 
 import numpy as np
 
+from uvms_core.signals import Array
 from uvms_dynamics import Model, inverse_dynamics
-from uvms_dynamics.signals import Array
 
 
 class Moment(NamedTuple):

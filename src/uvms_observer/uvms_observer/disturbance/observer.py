@@ -2,9 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics import Vehicle, build_model, coupling_wrench, restoring_wrench
-from uvms_dynamics.freshness import check_age
-from uvms_dynamics.signals import (
+from uvms_core.freshness import check_age
+from uvms_core.signals import (
     Array,
     DisturbanceBudget,
     JointStates,
@@ -12,6 +11,8 @@ from uvms_dynamics.signals import (
     Wrench,
     to_seconds,
 )
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import build_model, coupling_wrench, restoring_wrench
 from uvms_observer import checks
 from uvms_observer.disturbance.config import ObserverConfig
 from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment

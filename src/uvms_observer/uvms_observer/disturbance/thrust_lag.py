@@ -11,9 +11,9 @@ when thrusters that share an axis share a time constant. Slew limits are left ou
 
 import numpy as np
 
-from uvms_dynamics import Vehicle
-from uvms_dynamics.signals import Array
-from uvms_dynamics.thrusters import thruster_matrix
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.model import thruster_matrix
 
 
 class ThrustLag:

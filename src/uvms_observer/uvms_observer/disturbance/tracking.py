@@ -14,7 +14,7 @@ from math import factorial
 
 import numpy as np
 
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 VARIANCE_FLOOR = 1e-18
 """Keeps the innovation invertible when perfect measurements are fed in."""

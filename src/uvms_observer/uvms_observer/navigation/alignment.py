@@ -2,8 +2,8 @@
 
 import numpy as np
 
-from uvms_dynamics.rotations import quat_to_matrix
-from uvms_dynamics.signals import ImuSample
+from uvms_core.signals import ImuSample
+from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.state import (

@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from uvms_dynamics.config import Config
+from uvms_core.config import Config
 
 Vector3 = tuple[float, float, float]
 

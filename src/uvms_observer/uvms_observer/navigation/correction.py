@@ -9,8 +9,8 @@ The Joseph form keeps P positive semidefinite under rounding. The readable twin 
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.rotations import quat_multiply, rotation_vector_to_quat
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 

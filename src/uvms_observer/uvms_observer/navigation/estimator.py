@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from uvms_dynamics.geodesy import geodetic_to_ned
-from uvms_dynamics.signals import (
+from uvms_core.geodesy import geodetic_to_ned
+from uvms_core.signals import (
     Array,
     DvlSample,
     GpsSample,
@@ -20,7 +20,7 @@ from uvms_dynamics.signals import (
 from uvms_observer.navigation import updates
 from uvms_observer.navigation.alignment import aligned
 from uvms_observer.navigation.config import NavigationConfig
-from uvms_observer.navigation.gate import InnovationGate, Tally
+from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate

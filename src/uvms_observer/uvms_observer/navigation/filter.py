@@ -5,9 +5,8 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from uvms_dynamics import Vehicle
-from uvms_dynamics.errors import SignalError
-from uvms_dynamics.signals import (
+from uvms_core.errors import SignalError
+from uvms_core.signals import (
     DvlSample,
     GpsSample,
     ImuSample,
@@ -15,6 +14,7 @@ from uvms_dynamics.signals import (
     PressureSample,
     to_nanoseconds,
 )
+from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.estimator import Estimator

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics import Vehicle
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 

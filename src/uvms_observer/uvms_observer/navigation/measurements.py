@@ -14,7 +14,8 @@ differences.
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.rotations import (
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
     quat_to_matrix,
@@ -22,7 +23,6 @@ from uvms_dynamics.rotations import (
     rotation_vector_to_quat,
     skew,
 )
-from uvms_dynamics.signals import Array
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 

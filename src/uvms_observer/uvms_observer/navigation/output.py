@@ -8,8 +8,8 @@ With d from the IMU to the body origin (body axes) and w = w_m - b_g:
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.rotations import quat_to_matrix, skew
-from uvms_dynamics.signals import Array, Odometry
+from uvms_core.signals import Array, Odometry
+from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 

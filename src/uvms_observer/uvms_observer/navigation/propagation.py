@@ -20,8 +20,8 @@ from typing import NamedTuple
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 

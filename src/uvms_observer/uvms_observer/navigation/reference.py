@@ -5,8 +5,13 @@ Slow and plain: every function returns new values and reads like the formulas in
 
 import numpy as np
 
-from uvms_dynamics.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat, skew
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import (
+    quat_multiply,
+    quat_to_matrix,
+    rotation_vector_to_quat,
+    skew,
+)
 from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import (
     ACCELEROMETER_BIAS,

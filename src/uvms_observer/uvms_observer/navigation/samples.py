@@ -3,7 +3,7 @@
 from collections.abc import Callable, Iterable
 from typing import Any
 
-from uvms_dynamics.signals import DvlSample, GpsSample, ImuSample, PressureSample
+from uvms_core.signals import DvlSample, GpsSample, ImuSample, PressureSample
 from uvms_observer import checks
 
 Sample = ImuSample | DvlSample | PressureSample | GpsSample

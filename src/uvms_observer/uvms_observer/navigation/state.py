@@ -18,7 +18,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
 
 POSITION = slice(0, 3)
 VELOCITY = slice(3, 6)

@@ -7,8 +7,8 @@ residual's squared Mahalanobis distance.
 import numpy as np
 from numba import njit
 
-from uvms_dynamics.rotations import quat_to_matrix, skew
-from uvms_dynamics.signals import Array
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation import measurements
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.state import NavigationState

@@ -1,14 +1,16 @@
 """Node `disturbance_observer`: what acts on the vehicle besides its thrusters, eq. (21)."""
 
-from uvms_dynamics import topics
-from uvms_dynamics.gate import Previous, Same, Tick
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import UvmsNode
+from uvms_core import topics
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import UvmsNode
+from uvms_core.tick_gate import Previous, Same, Tick
 from uvms_observer import DisturbanceObserver, ObserverConfig
 
 
 class DisturbanceObserverNode(UvmsNode):
     """odometry, joint_states and wrench_achieved in; disturbance and disturbance/budget out."""
+
+    configurations = (ObserverConfig,)
 
     def __init__(self, **options) -> None:
         super().__init__("disturbance_observer", **options)
@@ -32,7 +34,7 @@ class DisturbanceObserverNode(UvmsNode):
 
 def main(args=None) -> int:
     """`ros2 run uvms_observer disturbance_observer`."""
-    return main_of(DisturbanceObserverNode, __doc__ or "", (ObserverConfig,), args)
+    return main_of(DisturbanceObserverNode, args)
 
 
 if __name__ == "__main__":

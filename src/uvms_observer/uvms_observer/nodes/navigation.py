@@ -1,15 +1,17 @@
 """Node `navigation`: the extended Kalman filter on the sensors' topics."""
 
-from uvms_dynamics import topics
-from uvms_dynamics.gate import Periodic, Tick
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.signals import to_nanoseconds
+from uvms_core import topics
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import UvmsNode
+from uvms_core.signals import to_nanoseconds
+from uvms_core.tick_gate import Periodic, Tick
 from uvms_observer import NavigationConfig, NavigationFilter
 
 
 class NavigationNode(UvmsNode):
     """sensors/* in, odometry out, once a control tick."""
+
+    configurations = (NavigationConfig,)
 
     def __init__(self, **options) -> None:
         super().__init__("navigation", **options)
@@ -40,7 +42,7 @@ def period_of(sensor) -> int:
 
 def main(args=None) -> int:
     """`ros2 run uvms_observer navigation`."""
-    return main_of(NavigationNode, __doc__ or "", (NavigationConfig,), args)
+    return main_of(NavigationNode, args)
 
 
 if __name__ == "__main__":

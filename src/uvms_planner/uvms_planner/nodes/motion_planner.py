@@ -7,15 +7,15 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
 
-from uvms_dynamics import diagnostics, topics
-from uvms_dynamics.errors import UvmsError
-from uvms_dynamics.gate import Same, Tick
-from uvms_dynamics.messages import from_message
-from uvms_dynamics.ros.convert import action_class
-from uvms_dynamics.ros.main import main_of
-from uvms_dynamics.ros.node import UvmsNode
-from uvms_dynamics.signals import NANOSECONDS, to_nanoseconds
-from uvms_dynamics.topics import Action
+from uvms_core import diagnostics, topics
+from uvms_core.errors import UvmsError
+from uvms_core.messages import from_message
+from uvms_core.ros.convert import action_class
+from uvms_core.ros.main import main_of
+from uvms_core.ros.node import UvmsNode
+from uvms_core.signals import NANOSECONDS, to_nanoseconds
+from uvms_core.tick_gate import Same, Tick
+from uvms_core.topics import Action
 from uvms_planner import MotionPlanner, PlannerConfig, PlannerStep
 
 
@@ -25,6 +25,8 @@ class MotionPlannerNode(UvmsNode):
     Actions: `follow_end_effector_path` and `follow_joint_trajectory`, one goal at a time. A goal
     that cannot be followed is rejected; the reason is logged and stands on /diagnostics.
     """
+
+    configurations = (PlannerConfig,)
 
     def __init__(self, **options) -> None:
         super().__init__("motion_planner", **options)
@@ -112,7 +114,7 @@ def _filled(msg: Any, source: Any) -> Any:
 
 def main(args=None) -> int:
     """`ros2 run uvms_planner motion_planner`."""
-    return main_of(MotionPlannerNode, __doc__ or "", (PlannerConfig,), args)
+    return main_of(MotionPlannerNode, args)
 
 
 if __name__ == "__main__":

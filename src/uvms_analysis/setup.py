@@ -1,0 +1,31 @@
+from setuptools import find_packages, setup
+
+PACKAGE = "uvms_analysis"
+
+setup(
+    name=PACKAGE,
+    version="0.1.0",
+    description="Logs, summaries and reports of runs, and trials of real vehicles.",
+    maintainer="UVMS maintainers",
+    maintainer_email="maintainers@uvms.example",
+    license="Apache-2.0",
+    python_requires=">=3.10",
+    packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
+    package_data={PACKAGE: ["py.typed", "**/*.html", "**/*.css", "**/*.js"]},
+    data_files=[
+        ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
+        (f"share/{PACKAGE}", ["package.xml"]),
+    ],
+    install_requires=[
+        "matplotlib>=3.8",
+        "mcap>=1.2",
+        "mcap-ros2-support>=0.5",
+        "numpy>=1.26",
+        "PyYAML>=6",
+        "scipy>=1.11",
+        "uvms_core",
+        "uvms_dynamics",
+    ],
+    zip_safe=False,
+    entry_points={},
+)

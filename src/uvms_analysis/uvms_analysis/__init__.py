@@ -1,0 +1,1 @@
+"""What runs and trials left behind: logs, summaries, reports, trials of real vehicles."""

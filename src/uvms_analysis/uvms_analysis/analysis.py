@@ -1,0 +1,225 @@
+"""What a log tells of a run: truth against estimate, path and reference."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from uvms_analysis.errors import LogError
+from uvms_analysis.log import goal_file
+from uvms_analysis.log.read import RunLog, Series
+from uvms_core import topics
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.errors import VehicleFileError
+from uvms_core.signals import Array, PathGoal, Reference, to_seconds
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.loader import vehicle_from_yaml
+from uvms_dynamics import Model, build_model, end_effector
+from uvms_dynamics.kernels.rotations import quat_to_rpy
+
+ELAPSED = "elapsed_s"
+"""Key in the planner's diagnostics: how much of its goal is done, s."""
+
+STILL = 1e-6
+"""A reference whose end effector moves less than this, m, holds still."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """Where the end effector should be, at the times of the true odometry that count."""
+
+    kind: str  # path, reference or start
+    index: np.ndarray  # (k,) into the true odometry
+    position: Array  # (k, 3) m, map_ned
+
+
+def together(one: Series, two: Series) -> tuple[Series, Series]:
+    """Two series at the stamps that both have."""
+    _, first, second = np.intersect1d(one.stamps, two.stamps, return_indices=True)
+    return one.take(first), two.take(second)
+
+
+class Analysis:
+    """A log with what follows from it; everything is worked out when first asked for."""
+
+    def __init__(self, log: RunLog) -> None:
+        self.log = log
+
+    @cached_property
+    def vehicle(self) -> Vehicle:
+        """The vehicle of the run; LogError where the log's copy is missing or damaged."""
+        text = self.log.text("vehicle.yaml")
+        try:
+            return vehicle_from_yaml(text, f"log {self.log.path}: its attachment 'vehicle.yaml'")
+        except VehicleFileError as fault:
+            raise LogError(str(fault)) from fault
+
+    @cached_property
+    def _model(self) -> Model:
+        return build_model(self.vehicle)
+
+    @cached_property
+    def _true(self) -> tuple[Series, Series]:
+        odometry = self.log.series(topics.TRUE_ODOMETRY)
+        return together(odometry, self.log.series(topics.TRUE_JOINT_STATES))
+
+    @property
+    def truth(self) -> Series:
+        """True odometry."""
+        return self._true[0]
+
+    @property
+    def joints(self) -> Series:
+        """True joints, at the times of the true odometry."""
+        return self._true[1]
+
+    @cached_property
+    def estimate(self) -> Series:
+        """Estimated odometry."""
+        return self.log.series(topics.ODOMETRY)
+
+    @cached_property
+    def disturbance(self) -> Series:
+        """True restoring, coupling and external wrench."""
+        return self.log.series(topics.TRUE_DISTURBANCE)
+
+    @cached_property
+    def observed(self) -> Series:
+        """Observed restoring, coupling and external wrench."""
+        return self.log.series(topics.DISTURBANCE_BUDGET)
+
+    @cached_property
+    def allocation(self) -> Series:
+        """Thrusts, saturation, achieved wrench and residual."""
+        return self.log.series(topics.ALLOCATION)
+
+    @cached_property
+    def rpy_deg(self) -> Array:
+        """True roll, pitch and yaw, (k, 3) degrees."""
+        return np.rad2deg(np.array([quat_to_rpy(q) for q in self.truth.quaternion]))
+
+    @cached_property
+    def end_effector(self) -> Array:
+        """True end effector, (k, 3) m in map_ned, at the times of the true odometry."""
+        return self._tool(self.truth, self.joints)
+
+    @cached_property
+    def estimated_end_effector(self) -> Series:
+        """End effector by estimated pose and encoders: `position` (k, 3) m in map_ned."""
+        odometry, joints = together(self.estimate, self.log.series(topics.JOINT_STATES))
+        return Series(odometry.stamps, {"position": self._tool(odometry, joints)})
+
+    def _tool(self, odometry: Series, joints: Series) -> Array:
+        rows = zip(odometry.position, odometry.quaternion, joints.position, strict=True)
+        return np.array([end_effector(self._model, *row)[0] for row in rows])
+
+    @cached_property
+    def references(self) -> list[Reference]:
+        """The planner's references."""
+        return self.log.signals(topics.REFERENCE) if self.log.has(topics.REFERENCE) else []
+
+    @cached_property
+    def planned(self) -> Series | None:
+        """The references as one series at their own sample times, None if there are none."""
+        if not self.references:
+            return None
+        names = ("position", "quaternion", "nu", "q", "q_dot", "end_effector")
+        columns = {n: np.concatenate([getattr(r, n) for r in self.references]) for n in names}
+        stamps = np.concatenate(
+            [r.stamp + np.rint(1e9 * r.times).astype(np.int64) for r in self.references]
+        )
+        # Segments share their ends: the later one counts.
+        last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
+        return Series(stamps[last], {name: column[last] for name, column in columns.items()})
+
+    @cached_property
+    def path(self) -> PathGoal | None:
+        """The path that the run was asked for."""
+        if goal_file.NAME not in self.log.attachments:
+            return None
+        return goal_file.path_from_json(self.log.text(goal_file.NAME))
+
+    @cached_property
+    def path_start_s(self) -> float:
+        """When the path begins: as the planner says, else where its references fit it best."""
+        for status in self.log.statuses("motion_planner"):
+            if np.isfinite(elapsed := status.number(ELAPSED)):
+                return round(to_seconds(status.stamp) - elapsed, 9)
+        return self._fitted_start()
+
+    def _fitted_start(self) -> float:
+        if self.path is None or self.planned is None:
+            return 0.0
+        curve, time, points = EndEffectorPath(self.path), self.planned.time, self.planned
+        starts = np.array([reference.stamp for reference in self.references]) / 1e9
+        misfits = [
+            float(np.sum((curve.positions(time - start) - points.end_effector) ** 2))
+            for start in starts[: max(len(starts) // 4, 4)]
+        ]
+        return float(starts[int(np.argmin(misfits))])
+
+    @cached_property
+    def target(self) -> Target:
+        """Where the end effector should be: on its path while that runs; without a path, where
+        the joints' motion as planned puts it; without either, where it is at the start.
+        """
+        time = self.truth.time
+        if self.path is not None:
+            curve = EndEffectorPath(self.path)
+            after = time - self.path_start_s
+            index = np.flatnonzero((after >= 0.0) & (after <= curve.duration))
+            return Target("path", index, curve.positions(after[index]))
+        if self.planned is not None and self._moves(self.planned.end_effector):
+            plan = self.planned
+            index = np.flatnonzero((time >= plan.time[0]) & (time <= plan.time[-1]))
+            columns = [np.interp(time[index], plan.time, plan.end_effector[:, i]) for i in range(3)]
+            return Target("reference", index, np.column_stack(columns))
+        held = np.tile(self.end_effector[:1], (len(time), 1))
+        return Target("start", np.arange(len(time)), held)
+
+    @staticmethod
+    def _moves(points: Array) -> bool:
+        return bool(np.ptp(points, axis=0).max() > STILL)
+
+    @cached_property
+    def end_effector_error(self) -> Array:
+        """True end effector minus target, (k, 3) m."""
+        return self.end_effector[self.target.index] - self.target.position
+
+    @cached_property
+    def tracking_error(self) -> Array:
+        """Estimated end effector minus target, (k, 3) m: what the loop itself can see."""
+        wanted = Series(self.truth.stamps[self.target.index], {"position": self.target.position})
+        estimated, wanted = together(self.estimated_end_effector, wanted)
+        return estimated.position - wanted.position
+
+    @cached_property
+    def navigation(self) -> tuple[Array, Array, Array]:
+        """Time (k,), estimated minus true position (k, 3) m, and its standard deviation."""
+        estimate, truth = together(self.estimate, self.truth)
+        variance = np.diagonal(estimate.pose_covariance, axis1=1, axis2=2)[:, :3]
+        error = estimate.position - truth.position
+        return truth.time, error, np.sqrt(np.maximum(variance, 0.0))
+
+    @cached_property
+    def vehicle_error(self) -> tuple[Array, Array]:
+        """Time (k,) and true minus planned position of the vehicle (k, 3) m."""
+        plan = self.planned
+        if plan is None:
+            raise LogError(f"log {self.log.path}: has no reference")
+        time = self.truth.time
+        index = np.flatnonzero((time >= plan.time[0]) & (time <= plan.time[-1]))
+        columns = [np.interp(time[index], plan.time, plan.position[:, i]) for i in range(3)]
+        return time[index], self.truth.position[index] - np.column_stack(columns)
+
+    @cached_property
+    def planner_step_ms(self) -> Array:
+        """Computing time of the planner's steps."""
+        values = [status.number("step_ms") for status in self.log.statuses("motion_planner")]
+        return np.array([value for value in values if np.isfinite(value)])
+
+    @cached_property
+    def lockstep_timeouts(self) -> int:
+        """How often the plant went on without a command."""
+        values = [status.number("lockstep_timeouts") for status in self.log.statuses("plant")]
+        return int(max((value for value in values if np.isfinite(value)), default=0))

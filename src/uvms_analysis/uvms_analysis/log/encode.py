@@ -1,0 +1,46 @@
+"""Signals straight to a log, without ROS: what the graph publishes, from the same dataclasses."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from uvms_analysis.log.schema import qos_yaml
+from uvms_analysis.log.writer import LogWriter
+from uvms_core.cdr import Codec, codec
+from uvms_core.messages import to_message
+from uvms_core.signals import Allocation, ThrusterCommand
+from uvms_core.topics import CLOCK, Topic
+
+
+class SignalWriter:
+    """Writes signals under a namespace, with the names of the vehicle's joints and thrusters."""
+
+    def __init__(
+        self,
+        log: LogWriter,
+        joint_names: Sequence[str],
+        thruster_names: Sequence[str],
+        namespace: str = "",
+    ) -> None:
+        self._log = log
+        self._joint_names = tuple(joint_names)
+        self._thruster_names = tuple(thruster_names)
+        self._namespace = namespace
+        self._channels: dict[str, tuple[str, str, Codec]] = {}
+
+    def write(self, topic: Topic, signal: Any, stamp: int | None = None) -> None:
+        """One signal at its own stamp, or at the tick's where one is given."""
+        if stamp is None:
+            stamp = signal if topic is CLOCK else signal.stamp
+        self.write_plain(topic, to_message(topic, signal, self._names(signal)), stamp)
+
+    def write_plain(self, topic: Topic, message: dict[str, Any], stamp: int) -> None:
+        """One message given as a nested dict, such as a static transform."""
+        channel = self._channels.get(topic.name)
+        if channel is None:
+            channel = topic.resolve(self._namespace), qos_yaml(topic.qos), codec(topic.type)
+            self._channels[topic.name] = channel
+        self._log.write(channel[0], topic.type, channel[1], stamp, channel[2].encode(message))
+
+    def _names(self, signal: Any) -> tuple[str, ...]:
+        thrusters = isinstance(signal, ThrusterCommand | Allocation)
+        return self._thruster_names if thrusters else self._joint_names

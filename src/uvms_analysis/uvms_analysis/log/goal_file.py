@@ -1,0 +1,37 @@
+"""The path of a run as the attachment `path.json` of its log."""
+
+import json
+
+import numpy as np
+
+from uvms_analysis.errors import LogError
+from uvms_core.signals import PathGoal
+
+NAME = "path.json"
+
+
+def path_to_json(goal: PathGoal) -> str:
+    """Times in s after the start, positions in m (map_ned), orientations x, y, z, w."""
+    return json.dumps(
+        {
+            "times": goal.times.tolist(),
+            "positions": goal.positions.tolist(),
+            "orientations": goal.orientations.tolist(),
+        }
+    )
+
+
+def path_from_json(text: str) -> PathGoal:
+    """The goal back, every float exact.
+
+    Raises:
+        LogError: the text is not such a path.
+    """
+    try:
+        data = json.loads(text)
+        times = np.array(data["times"], dtype=np.float64)
+        positions = np.array(data["positions"], dtype=np.float64).reshape(len(times), 3)
+        orientations = np.array(data["orientations"], dtype=np.float64).reshape(-1, 4)
+    except (ValueError, KeyError, TypeError) as fault:
+        raise LogError(f"{NAME}: is not a path of the end effector: {fault}") from fault
+    return PathGoal(times, positions, orientations)

@@ -1,0 +1,210 @@
+"""Reads a log topic by topic, as signals or as numpy arrays over time."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import fields, is_dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from uvms_analysis.errors import LogError
+from uvms_analysis.log.records import Records, read_records
+from uvms_core import topics
+from uvms_core.cdr import CdrError, Codec
+from uvms_core.diagnostics import Status
+from uvms_core.errors import SignalError
+from uvms_core.messages import from_message
+from uvms_core.signals import NANOSECONDS, Array
+from uvms_core.topics import Topic
+from uvms_core.yaml_text import parse_yaml
+
+RUN = "uvms"
+"""Name of the metadata record about the run."""
+
+_TELLING = (topics.TRUE_ODOMETRY, topics.THRUSTER_COMMAND, topics.WRENCH_COMMAND, topics.IMU)
+"""Topics from whose full names the namespace is seen: no other topic's name ends as theirs do."""
+
+
+class Series:
+    """Signals of one topic over time: `stamps` (k,) in ns, `time` in s, an array per field."""
+
+    def __init__(self, stamps: np.ndarray, columns: dict[str, np.ndarray]) -> None:
+        self.stamps = stamps
+        self.time: Array = stamps / NANOSECONDS
+        self._columns = columns
+
+    def __getattr__(self, name: str) -> np.ndarray:
+        try:
+            return self.__dict__["_columns"][name]
+        except KeyError:
+            raise AttributeError(f"no field {name!r} in {', '.join(self._columns)}") from None
+
+    def __len__(self) -> int:
+        return len(self.time)
+
+    def take(self, index: np.ndarray) -> "Series":
+        """The series at these indices."""
+        return Series(self.stamps[index], {key: of[index] for key, of in self._columns.items()})
+
+
+class RunLog:
+    """A log in memory, unpacked and decoded only where it is asked for.
+
+    `fault` is empty, or says why the log is not complete; what lies before the break can be read.
+    Messages that are no valid signals (a NaN in a command, say) are left out and counted in
+    `rejected`.
+    """
+
+    def __init__(self, records: Records) -> None:
+        self._records = records
+        self.path = records.path
+        self.fault = records.fault
+        self.attachments = records.attachments
+        self.metadata = records.metadata
+        self.rejected: dict[str, list[str]] = {}
+        self._numbers = {channel.topic: key for key, channel in records.channels.items()}
+        self._signals: dict[str, list[Any]] = {}
+        self.namespace = self._find_namespace()
+
+    @classmethod
+    def open(cls, path: str | Path) -> "RunLog":
+        """The log in a file.
+
+        Raises:
+            LogError: there is no such file, it cannot be read, or it is no MCAP file.
+        """
+        return cls(read_records(path))
+
+    @property
+    def run(self) -> dict[str, str]:
+        """What the log says of its run: scenario, seed, git revision, version, pace, command."""
+        return self.metadata.get(RUN, {})
+
+    @property
+    def topics(self) -> dict[str, str]:
+        """Full names of the topics and their types."""
+        channels = self._records.channels.values()
+        return {
+            channel.topic: self._records.schemas[channel.schema_id].name for channel in channels
+        }
+
+    def text(self, name: str) -> str:
+        """An attachment as text.
+
+        Raises:
+            LogError: the log has none of that name, or it is damaged.
+        """
+        if name not in self.attachments:
+            known = ", ".join(self.attachments) or "none"
+            raise LogError(f"log {self.path}: has no attachment {name!r}; it has {known}")
+        try:
+            return self.attachments[name].decode()
+        except UnicodeDecodeError as fault:
+            raise LogError(
+                f"log {self.path}: its attachment {name!r} is damaged: {fault}"
+            ) from fault
+
+    def configuration(self) -> dict[str, Any]:
+        """The complete configuration of the run.
+
+        Raises:
+            LogError: the log has none, or it is damaged.
+        """
+        what = f"log {self.path}: its attachment 'config.yaml'"
+        values = parse_yaml(self.text("config.yaml"), what, LogError)
+        if not isinstance(values, dict):
+            raise LogError(f"{what} is not a mapping of names to values")
+        return values
+
+    def has(self, topic: Topic) -> bool:
+        """Whether there is a channel of the topic."""
+        return self.full_name(topic) in self._numbers
+
+    def full_name(self, topic: Topic) -> str:
+        """The topic's name in this log."""
+        return topic.resolve(self.namespace)
+
+    def raw(self, names: Sequence[str] | None = None) -> Iterator[tuple[str, int, bytes]]:
+        """Full topic name, stamp and CDR bytes of messages as they lie in the file."""
+        wanted = None if names is None else {self._number(name) for name in names}
+        channels = self._records.channels
+        for number, stamp, data in self._records.messages(wanted):
+            yield channels[number].topic, stamp, data
+
+    def channel(self, name: str) -> tuple[str, bytes, dict[str, str]]:
+        """Type, schema text and metadata of the channel of a full topic name."""
+        channel = self._records.channels[self._number(name)]
+        schema = self._records.schemas[channel.schema_id]
+        return schema.name, schema.data, dict(channel.metadata)
+
+    def codec(self, name: str) -> Codec:
+        """The codec of a full topic name, from the log's own definition."""
+        type_name, text, _ = self.channel(name)
+        return Codec(type_name, text.decode())
+
+    def signals(self, topic: Topic) -> list[Any]:
+        """All signals of a topic, in order.
+
+        Raises:
+            LogError: the log has no such topic.
+        """
+        if topic.name not in self._signals:
+            self.load([topic])
+        return self._signals[topic.name]
+
+    def load(self, wanted: Sequence[Topic]) -> None:
+        """Decode several topics in one pass."""
+        fresh = [topic for topic in wanted if topic.name not in self._signals]
+        readers = {self.full_name(topic): (topic, self._decoder(topic)) for topic in fresh}
+        self._signals.update({topic.name: [] for topic in fresh})
+        for name, stamp, data in self.raw(list(readers)) if readers else ():
+            topic, decode = readers[name]
+            try:
+                self._signals[topic.name].append(from_message(topic, decode(data)))
+            except (SignalError, CdrError) as fault:
+                what = f"{stamp / NANOSECONDS:.3f} s: {fault}"
+                self.rejected.setdefault(topic.name, []).append(what)
+
+    def series(self, topic: Topic) -> Series:
+        """A topic over time, each field of its signal in one array.
+
+        Raises:
+            LogError: the log has no such topic, or no valid message of it.
+        """
+        signals = self.signals(topic)
+        if signals and isinstance(signals[0], int):  # a clock
+            return Series(np.array(signals, dtype=np.int64), {})
+        if not signals or not is_dataclass(signals[0]):
+            raise LogError(f"log {self.path}: has no valid message of {topic.name}")
+        names = [field.name for field in fields(signals[0]) if field.name != "stamp"]
+        columns = {name: np.array([getattr(one, name) for one in signals]) for name in names}
+        return Series(np.array([one.stamp for one in signals], dtype=np.int64), columns)
+
+    def statuses(self, node: str) -> list[Status]:
+        """Diagnostics of one node; names may carry a namespace or a title behind a colon."""
+        everything = self.signals(topics.DIAGNOSTICS) if self.has(topics.DIAGNOSTICS) else []
+        return [one for one in everything if _node_of(one.name) == node]
+
+    def _decoder(self, topic: Topic) -> Any:
+        name = self.full_name(topic)
+        codec, type_name = self.codec(name), self.channel(name)[0]
+        if type_name != topic.type:
+            raise LogError(f"log {self.path}: {name} is {type_name}, not {topic.type}")
+        return codec.decode
+
+    def _number(self, name: str) -> int:
+        if name not in self._numbers:
+            known = ", ".join(sorted(self._numbers)) or "nothing"
+            raise LogError(f"log {self.path}: has no topic {name}; it has {known}")
+        return self._numbers[name]
+
+    def _find_namespace(self) -> str:
+        for topic in _TELLING:
+            for name in self._numbers:
+                if name.endswith("/" + topic.name):
+                    return name.removesuffix(topic.name).strip("/")
+        return ""
+
+
+def _node_of(name: str) -> str:
+    return name.split(":")[0].strip().rsplit("/", 1)[-1]

@@ -1,0 +1,80 @@
+"""`uvms report`: figures of a run in the manner of the paper's Figs. 7-9, and a page about it."""
+
+import json
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from matplotlib.figure import Figure
+
+from uvms_analysis.analysis import Analysis
+from uvms_analysis.errors import LogError
+from uvms_analysis.log.read import RunLog
+from uvms_analysis.report import force_figures, motion_figures, style
+from uvms_analysis.report.page import Picture, write_page
+from uvms_analysis.summary import summarise
+
+FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
+    "end_effector": (
+        "End effector: true position against its target, and the error between them.",
+        motion_figures.end_effector,
+    ),
+    "joints": ("Joint angles, true and as planned.", motion_figures.joints),
+    "attitude": ("Attitude of the vehicle, true and estimated.", motion_figures.attitude),
+    "vehicle": ("Pose of the vehicle, true and as planned.", motion_figures.vehicle),
+    "self_disturbance": (
+        "Self-disturbance: restoring and coupling wrench on the vehicle, body frame. "
+        "Grey: as observed.",
+        force_figures.self_disturbance,
+    ),
+    "thrusters": ("Thrust as allocated; dotted: limits.", force_figures.thrusters),
+    "navigation": (
+        "Estimated minus true position, and what the filter thinks of it.",
+        force_figures.navigation,
+    ),
+}
+
+
+def report(log: str | Path, output: str | Path | None = None) -> Path:
+    """Draw all figures of a log and write `report.html`; returns the page.
+
+    Args:
+        log: MCAP file of a run.
+        output: folder for figures and page; None: the log's own.
+
+    Raises:
+        LogError: the log cannot be read, or the folder cannot be written.
+    """
+    run = RunLog.open(log)
+    folder = Path(output) if output is not None else run.path.parent
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as fault:
+        raise LogError(f"{folder}: cannot be written: {fault.strerror}") from fault
+    summary = summarise(run, **_from_runner(run))
+    pictures = _draw(Analysis(run), folder)
+    return write_page(folder / "report.html", run, summary, pictures)
+
+
+def _from_runner(run: RunLog) -> dict[str, Any]:
+    """What only the runner knows, from the summary beside the log if there is one."""
+    beside = run.path.parent / "summary.json"
+    try:
+        known = json.loads(beside.read_text(encoding="utf-8"))
+        return {"completed": bool(known["completed"]), "wall_s": float(known["wall_s"])}
+    except (OSError, ValueError, KeyError, TypeError):
+        return {"completed": not run.fault, "wall_s": 0.0}
+
+
+def _draw(run: Analysis, folder: Path) -> list[Picture]:
+    pictures = []
+    for name, (caption, draw) in FIGURES.items():
+        path = folder / f"{name}.png"
+        try:
+            with style.settings():
+                draw(run).savefig(path)
+        except LogError as fault:
+            pictures.append(Picture(name, caption, None, str(fault)))
+        else:
+            pictures.append(Picture(name, caption, path))
+    return pictures

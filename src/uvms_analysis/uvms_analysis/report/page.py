@@ -1,0 +1,143 @@
+"""The page about a run: one HTML file that needs nothing beside itself."""
+
+import base64
+import html
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from uvms_analysis.errors import LogError
+from uvms_analysis.log.read import RunLog
+
+CSS = Path(__file__).with_name("page.css")
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A figure with its caption, or the reason why there is none."""
+
+    name: str
+    caption: str
+    file: Path | None
+    reason: str = ""
+
+
+def write_page(path: Path, log: RunLog, summary: dict[str, Any], pictures: list[Picture]) -> Path:
+    """Write the page and return its path."""
+    title = f"{summary['scenario'] or log.path.stem}, seed {summary['seed']}"
+    body = [
+        _head(title, summary),
+        _notes(summary),
+        _cards(summary),
+        *(_figure(picture) for picture in pictures),
+        "<h2>Summary</h2>",
+        _table(flatten(summary)),
+        "<h2>About the run</h2>",
+        _table(dict(log.run) | {"log": log.path.name}),
+        *(_details(name, log) for name in ("config.yaml", "vehicle.yaml")),
+    ]
+    path.write_text(_document(title, "\n".join(body)), encoding="utf-8")
+    return path
+
+
+def flatten(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Nested values with dotted names."""
+    flat: dict[str, Any] = {}
+    for key, value in values.items():
+        if isinstance(value, dict):
+            flat |= flatten(value, f"{prefix}{key}.")
+        else:
+            flat[prefix + key] = value
+    return flat
+
+
+def _document(title: str, body: str) -> str:
+    style = CSS.read_text(encoding="utf-8")
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f"<title>{html.escape(title)}</title>\n<style>\n{style}</style>\n</head>\n"
+        f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
+    )
+
+
+def _head(title: str, summary: dict[str, Any]) -> str:
+    word, kind = ("completed", "good") if summary["completed"] else ("not completed", "bad")
+    return f'<header><h1>{html.escape(title)}</h1><span class="badge {kind}">{word}</span></header>'
+
+
+def _notes(summary: dict[str, Any]) -> str:
+    notes = []
+    if summary["log_fault"]:
+        notes.append(f"The log is not complete: {summary['log_fault']}.")
+    if summary["rejected_messages"]:
+        named = ", ".join(f"{count} of {n}" for n, count in summary["rejected_messages"].items())
+        notes.append(f"Messages that are no valid signals are left out: {named}.")
+    if summary["lockstep_timeouts"]:
+        notes.append(f"The plant went on without a command {summary['lockstep_timeouts']} times.")
+    return "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes)
+
+
+def _cards(summary: dict[str, Any]) -> str:
+    def of(name: str, part: str, scale: float = 1.0) -> float | None:
+        value = summary[name][part]
+        return None if value is None else scale * value
+
+    cards = (
+        ("end-effector error", of("end_effector_error_m", "rms", 1e3), "mm rms",
+         of("end_effector_error_m", "max", 1e3), "mm max"),
+        ("navigation error", of("navigation_error_m", "rms", 1e3), "mm rms",
+         of("navigation_error_m", "max", 1e3), "mm max"),
+        ("roll", of("roll_deg", "max"), "° max", of("roll_deg", "rms"), "° rms"),
+        ("pitch", of("pitch_deg", "max"), "° max", of("pitch_deg", "rms"), "° rms"),
+        ("self-disturbance", of("self_disturbance", "moment_rms_nm"), "N m rms",
+         of("self_disturbance", "force_rms_n"), "N rms"),
+        ("planner step", of("planner_step_ms", "p50"), "ms median",
+         of("planner_step_ms", "p99"), "ms p99"),
+        ("simulated", summary["sim_duration_s"], "s", summary["real_time_factor"], "× real time"),
+    )  # fmt: skip
+    return '<section class="cards">' + "".join(_card(*card) for card in cards) + "</section>"
+
+
+def _card(name: str, first: float | None, unit: str, second: float | None, second_unit: str) -> str:
+    below = "" if second is None else f"{_number(second)} {second_unit}"
+    return (
+        f'<div class="card"><h3>{name}</h3><p class="big">{_number(first)}'
+        f'<span> {unit}</span></p><p class="small">{below}</p></div>'
+    )
+
+
+def _number(value: Any) -> str:
+    if value is None:
+        return "–"
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        return html.escape(str(value))
+    return str(value) if isinstance(value, int) else f"{value:.4g}"
+
+
+def _figure(picture: Picture) -> str:
+    caption = f"<figcaption>{html.escape(picture.caption)}</figcaption>"
+    if picture.file is None:
+        reason = html.escape(picture.reason)
+        return f'<figure>{caption}<p class="note">No figure: {reason}</p></figure>'
+    data = base64.b64encode(picture.file.read_bytes()).decode()
+    image = f'<img alt="{html.escape(picture.caption)}" src="data:image/png;base64,{data}">'
+    return f'<figure id="{picture.name}">{image}{caption}</figure>'
+
+
+def _table(values: dict[str, Any]) -> str:
+    rows = (
+        f"<tr><th>{html.escape(key)}</th><td>{_number(value)}</td></tr>"
+        for key, value in values.items()
+    )
+    return f"<table>{''.join(rows)}</table>"
+
+
+def _details(name: str, log: RunLog) -> str:
+    if name not in log.attachments:
+        return ""
+    try:
+        text = html.escape(log.text(name))
+    except LogError as fault:
+        text = html.escape(str(fault))
+    return f"<details><summary>{name}</summary><pre>{text}</pre></details>"

@@ -1,0 +1,4 @@
+"""What all parts of the system agree on: vehicle file, signals, topics, messages, doors.
+
+Free of physics; importing it loads neither numba nor scipy nor ROS.
+"""

@@ -1,0 +1,79 @@
+"""One base for every configuration: each parameter is spelled once, with unit, bound and meaning.
+
+A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS parameters all derive
+from its fields, so that a gain has one name, one default and one description.
+"""
+
+from typing import Any, get_args
+
+from pydantic import BaseModel, ConfigDict, Field, ValidationError
+
+from uvms_core.errors import ConfigError, UvmsError
+
+_LONGEST_ECHO = 120  # characters of a wrong value that are worth repeating in an error
+
+
+class Config(BaseModel):
+    """Base of all configurations: frozen, known names only, finite numbers only."""
+
+    model_config = ConfigDict(
+        extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
+    )
+
+
+class PluginConfig(Config):
+    """Base of a section whose part may be replaced: the parameters that only the part knows."""
+
+    parameters: Any = Field(
+        default_factory=dict,
+        description="what only the chosen part knows, by name (its class lists them as Parameters)",
+    )
+
+
+def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
+    """One line per fault: the field, the value, and what is allowed."""
+    items = error.errors()
+    places = [item["loc"] for item in items]
+    told = [item for item in items if not _follows_from_others(item, places)]
+    return "\n".join(_explain_one(item, what, model) for item in told)
+
+
+def _follows_from_others(item, places: list[tuple]) -> bool:
+    """Whether a list is only called too short because of faults of its own values."""
+    place = item["loc"]
+    inside = (other[: len(place)] == place and len(other) > len(place) for other in places)
+    return item["type"] == "too_short" and any(inside)
+
+
+def _explain_one(item, what: str, model: type[BaseModel]) -> str:
+    path = ".".join(str(part) for part in item["loc"]) or "(top)"
+    line = f"{what}: {path}: {item['msg']}"
+    if item["type"] == "extra_forbidden":
+        return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
+    if item["type"] == "missing":
+        return line
+    got = repr(item["input"])
+    return f"{line} (got {got})" if len(got) <= _LONGEST_ECHO else line
+
+
+def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
+    for part in path:
+        field = model.model_fields.get(str(part))
+        model = _inner_model(getattr(field, "annotation", None)) or model
+    return sorted(model.model_fields)
+
+
+def _inner_model(annotation) -> type[BaseModel] | None:
+    """The model in an annotation such as `M`, `M | None` or `tuple[M, ...]`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        return annotation
+    inner = (_inner_model(argument) for argument in get_args(annotation))
+    return next(filter(None, inner), None)
+
+
+def validated(model: type[BaseModel], data, what: str, error: type[UvmsError] = ConfigError):
+    """`model` made from `data`, or one clear error that lists every fault."""
+    try:
+        return model.model_validate(data)
+    except ValidationError as fault:
+        raise error(explain(fault, what, model)) from fault

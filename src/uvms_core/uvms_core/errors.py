@@ -1,0 +1,25 @@
+"""The exception tree that every package of the project hangs its own branch on."""
+
+
+class UvmsError(Exception):
+    """Root of every error that this project raises on purpose; its text is meant for the user."""
+
+
+class VehicleFileError(UvmsError):
+    """A vehicle file is missing, unreadable or names a value that is not allowed."""
+
+
+class ConfigError(UvmsError):
+    """A configuration value is unknown or outside its bounds."""
+
+
+class PluginError(UvmsError):
+    """A part that is found by name is unknown, cannot be imported or does not fit."""
+
+
+class SignalError(UvmsError):
+    """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
+
+
+class PlantDiverged(UvmsError):  # noqa: N818 (an event of the simulation rather than a fault)
+    """The plant's state is not finite any more; names the stamp and the state."""

@@ -1,0 +1,50 @@
+"""The clock and the diagnostics to messages and back."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from uvms_core.diagnostics import Status
+from uvms_core.errors import SignalError
+from uvms_core.messages import checks, parts
+from uvms_core.messages.parts import Plain
+from uvms_core.topics import Topic
+
+
+def clock_to(topic: Topic, stamp: int, names: Sequence[str]) -> Plain:
+    """rosgraph_msgs/Clock."""
+    return {"clock": parts.time(stamp)}
+
+
+def clock_from(topic: Topic, msg: Any, names: Sequence[str]) -> int:
+    """From rosgraph_msgs/Clock."""
+    return checks.stamp_of(msg.clock)
+
+
+def status_to(topic: Topic, status: Status, names: Sequence[str]) -> Plain:
+    """diagnostic_msgs/DiagnosticArray with one status.
+
+    The level is an integer here; rclpy wants a `byte` field as `bytes([level])`.
+    """
+    values = [{"key": key, "value": _text(value)} for key, value in status.values.items()]
+    one = {
+        "level": status.level,
+        "name": status.name,
+        "message": status.message,
+        "hardware_id": "",
+        "values": values,
+    }
+    return {"header": parts.header(topic, status.stamp), "status": [one]}
+
+
+def _text(value: float | int | bool | str) -> str:
+    return value if isinstance(value, str) else repr(value)
+
+
+def status_from(topic: Topic, msg: Any, names: Sequence[str]) -> Status:
+    """From diagnostic_msgs/DiagnosticArray with one status."""
+    if len(msg.status) != 1:
+        raise SignalError(f"{topic.name}: status has {len(msg.status)} values; it must have 1")
+    one = msg.status[0]
+    level = one.level[0] if isinstance(one.level, bytes) else one.level
+    values = {item.key: item.value for item in one.values}
+    return Status(checks.stamp_of(msg.header.stamp), one.name, level, one.message, values)

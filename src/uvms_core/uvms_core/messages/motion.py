@@ -1,0 +1,188 @@
+"""States, wrenches and commands to messages and back."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from uvms_core.errors import SignalError
+from uvms_core.messages import checks, parts
+from uvms_core.messages.parts import Plain
+from uvms_core.signals import (
+    Allocation,
+    DisturbanceBudget,
+    JointCommand,
+    JointStates,
+    Odometry,
+    ThrusterCommand,
+    Wrench,
+)
+from uvms_core.topics import Topic
+
+
+def odometry_to(topic: Topic, value: Odometry, names: Sequence[str]) -> Plain:
+    """nav_msgs/Odometry."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "child_frame_id": topic.child_frame,
+        "pose": {
+            "pose": parts.pose(value.position, value.quaternion),
+            "covariance": value.pose_covariance.ravel(),
+        },
+        "twist": {
+            "twist": parts.twist(value.nu),
+            "covariance": value.twist_covariance.ravel(),
+        },
+    }
+
+
+def odometry_from(topic: Topic, msg: Any, names: Sequence[str]) -> Odometry:
+    """From nav_msgs/Odometry."""
+    checks.check_frame(topic, msg.header)
+    checks.check_child_frame(topic, msg.child_frame_id)
+    pose = msg.pose.pose
+    return Odometry(
+        checks.stamp_of(msg.header.stamp),
+        checks.vector(topic, "pose.pose.position", pose.position),
+        checks.quaternion(topic, "pose.pose.orientation", pose.orientation),
+        checks.twist(topic, "twist.twist", msg.twist.twist),
+        checks.covariance(topic, "pose.covariance", msg.pose.covariance, 6),
+        checks.covariance(topic, "twist.covariance", msg.twist.covariance, 6),
+    )
+
+
+def tf_to(topic: Topic, value: Odometry, names: Sequence[str]) -> Plain:
+    """tf2_msgs/TFMessage with the vehicle's pose."""
+    transform = {
+        "header": parts.header(topic, value.stamp),
+        "child_frame_id": topic.child_frame,
+        "transform": {
+            "translation": parts.vector(value.position),
+            "rotation": parts.quaternion(value.quaternion),
+        },
+    }
+    return {"transforms": [transform]}
+
+
+def joints_to(topic: Topic, value: JointStates, names: Sequence[str]) -> Plain:
+    """sensor_msgs/JointState."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "name": list(names),
+        "position": parts.floats(value.position),
+        "velocity": parts.floats(value.velocity),
+        "effort": parts.floats(value.effort),
+    }
+
+
+def joints_from(topic: Topic, msg: Any, names: Sequence[str]) -> JointStates:
+    """From sensor_msgs/JointState with position, velocity and effort."""
+    checks.check_frame(topic, msg.header)
+    index = checks.order(topic, "name", msg.name, names)
+    count = len(msg.name)
+    return JointStates(
+        checks.stamp_of(msg.header.stamp),
+        checks.floats(topic, "position", msg.position, count)[index],
+        checks.floats(topic, "velocity", msg.velocity, count)[index],
+        checks.floats(topic, "effort", msg.effort, count)[index],
+    )
+
+
+def _effort_to(topic: Topic, stamp: int, effort: Any, names: Sequence[str]) -> Plain:
+    return {
+        "header": parts.header(topic, stamp),
+        "name": list(names),
+        "position": parts.floats(effort[:0]),
+        "velocity": parts.floats(effort[:0]),
+        "effort": parts.floats(effort),
+    }
+
+
+def _effort_from(topic: Topic, msg: Any, names: Sequence[str]) -> tuple[int, Any]:
+    checks.check_frame(topic, msg.header)
+    index = checks.order(topic, "name", msg.name, names)
+    effort = checks.floats(topic, "effort", msg.effort, len(msg.name))[index]
+    return checks.stamp_of(msg.header.stamp), effort
+
+
+def joint_command_to(topic: Topic, value: JointCommand, names: Sequence[str]) -> Plain:
+    """sensor_msgs/JointState with efforts alone, by joint name."""
+    return _effort_to(topic, value.stamp, value.effort, names)
+
+
+def joint_command_from(topic: Topic, msg: Any, names: Sequence[str]) -> JointCommand:
+    """From sensor_msgs/JointState with efforts."""
+    return JointCommand(*_effort_from(topic, msg, names))
+
+
+def thruster_command_to(topic: Topic, value: ThrusterCommand, names: Sequence[str]) -> Plain:
+    """sensor_msgs/JointState with thrusts as efforts, by thruster name."""
+    return _effort_to(topic, value.stamp, value.thrust, names)
+
+
+def thruster_command_from(topic: Topic, msg: Any, names: Sequence[str]) -> ThrusterCommand:
+    """From sensor_msgs/JointState with thrusts as efforts."""
+    return ThrusterCommand(*_effort_from(topic, msg, names))
+
+
+def wrench_to(topic: Topic, value: Wrench, names: Sequence[str]) -> Plain:
+    """geometry_msgs/WrenchStamped."""
+    return {"header": parts.header(topic, value.stamp), "wrench": parts.wrench(value.wrench)}
+
+
+def wrench_from(topic: Topic, msg: Any, names: Sequence[str]) -> Wrench:
+    """From geometry_msgs/WrenchStamped."""
+    checks.check_frame(topic, msg.header)
+    return Wrench(checks.stamp_of(msg.header.stamp), checks.wrench(topic, "wrench", msg.wrench))
+
+
+def budget_to(topic: Topic, value: DisturbanceBudget, names: Sequence[str]) -> Plain:
+    """uvms_msgs/DisturbanceBudget."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "restoring": parts.wrench(value.restoring),
+        "coupling": parts.wrench(value.coupling),
+        "external": parts.wrench(value.external),
+    }
+
+
+def budget_from(topic: Topic, msg: Any, names: Sequence[str]) -> DisturbanceBudget:
+    """From uvms_msgs/DisturbanceBudget."""
+    checks.check_frame(topic, msg.header)
+    return DisturbanceBudget(
+        checks.stamp_of(msg.header.stamp),
+        checks.wrench(topic, "restoring", msg.restoring),
+        checks.wrench(topic, "coupling", msg.coupling),
+        checks.wrench(topic, "external", msg.external),
+    )
+
+
+def allocation_to(topic: Topic, value: Allocation, names: Sequence[str]) -> Plain:
+    """uvms_msgs/Allocation."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "thruster_names": list(names),
+        "thrust": parts.floats(value.thrust),
+        "saturated": value.saturated.tolist(),
+        "achieved": parts.wrench(value.achieved),
+        "residual": parts.wrench(value.residual),
+    }
+
+
+def allocation_from(topic: Topic, msg: Any, names: Sequence[str]) -> Allocation:
+    """From uvms_msgs/Allocation."""
+    checks.check_frame(topic, msg.header)
+    index = checks.order(topic, "thruster_names", msg.thruster_names, names)
+    count = len(msg.thruster_names)
+    saturated = np.array(msg.saturated, dtype=np.bool_)
+    if saturated.shape != (count,):
+        raise SignalError(
+            f"{topic.name}: saturated has {saturated.size} values; it must have {count}"
+        )
+    return Allocation(
+        checks.stamp_of(msg.header.stamp),
+        checks.floats(topic, "thrust", msg.thrust, count)[index],
+        checks.wrench(topic, "achieved", msg.achieved),
+        checks.wrench(topic, "residual", msg.residual),
+        saturated[index],
+    )

@@ -1,0 +1,80 @@
+"""The planner's reference to a message and back."""
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from uvms_core.errors import SignalError
+from uvms_core.messages import checks, parts
+from uvms_core.messages.parts import Plain
+from uvms_core.signals import Reference, to_nanoseconds
+from uvms_core.topics import Topic
+
+
+def reference_to(topic: Topic, value: Reference, names: Sequence[str]) -> Plain:
+    """uvms_msgs/Reference."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "joint_names": list(names),
+        "points": [_point_to(value, k) for k in range(len(value.times))],
+    }
+
+
+def _point_to(value: Reference, k: int) -> Plain:
+    return {
+        "time_from_start": parts.time(to_nanoseconds(float(value.times[k]))),
+        "pose": parts.pose(value.position[k], value.quaternion[k]),
+        "twist": parts.twist(value.nu[k]),
+        "accel": parts.twist(value.nu_dot[k]),
+        "joint_position": parts.floats(value.q[k]),
+        "joint_velocity": parts.floats(value.q_dot[k]),
+        "joint_acceleration": parts.floats(value.q_ddot[k]),
+        "end_effector": parts.vector(value.end_effector[k]),
+    }
+
+
+def reference_from(topic: Topic, msg: Any, names: Sequence[str]) -> Reference:
+    """From uvms_msgs/Reference; its times must increase from 0."""
+    checks.check_frame(topic, msg.header)
+    index = checks.order(topic, "joint_names", msg.joint_names, names)
+    if not len(msg.points):
+        raise SignalError(f"{topic.name}: points is empty; it must have at least one")
+    count = len(msg.joint_names)
+    offsets = [point.time_from_start for point in msg.points]
+    times = checks.times(topic, "points[{}].time_from_start", offsets)
+    if times[0] != 0.0:
+        raise SignalError(
+            f"{topic.name}: points[0].time_from_start is {times[0]:g} s; it must be 0"
+        )
+    rows = [_point_from(topic, k, point, count) for k, point in enumerate(msg.points)]
+    pose, attitude, nu, nu_dot, q, q_dot, q_ddot, tool = (
+        np.array(column) for column in zip(*rows, strict=True)
+    )
+    return Reference(
+        checks.stamp_of(msg.header.stamp),
+        times,
+        pose,
+        attitude,
+        nu,
+        nu_dot,
+        np.ascontiguousarray(q[:, index]),
+        np.ascontiguousarray(q_dot[:, index]),
+        np.ascontiguousarray(q_ddot[:, index]),
+        tool,
+    )
+
+
+def _point_from(topic: Topic, k: int, point: Any, count: int) -> tuple[Any, ...]:
+    at = f"points[{k}]"
+    pose = point.pose
+    return (
+        checks.xyz(topic, f"{at}.pose.position", pose.position),
+        checks.quaternion(topic, f"{at}.pose.orientation", pose.orientation),
+        checks.twist(topic, f"{at}.twist", point.twist),
+        checks.twist(topic, f"{at}.accel", point.accel),
+        checks.floats(topic, f"{at}.joint_position", point.joint_position, count),
+        checks.floats(topic, f"{at}.joint_velocity", point.joint_velocity, count),
+        checks.floats(topic, f"{at}.joint_acceleration", point.joint_acceleration, count),
+        checks.xyz(topic, f"{at}.end_effector", point.end_effector),
+    )

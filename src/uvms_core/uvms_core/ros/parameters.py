@@ -1,0 +1,108 @@
+"""ROS parameters from a configuration's fields: name, type, default, bounds, description."""
+
+from collections.abc import Iterator
+from typing import Any, TypeVar
+
+import annotated_types
+from pydantic import BaseModel
+from pydantic.fields import FieldInfo
+from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescriptor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+
+from uvms_core.config import Config, validated
+
+C = TypeVar("C", bound=Config)
+
+
+def declare_config(node: Node, model: type[C]) -> C:
+    """Declare every field of `model` (nested ones with dots) and return the validated values.
+
+    Raises:
+        ConfigError: a value is outside its bounds; the message names it and what is allowed.
+    """
+    values: dict[str, Any] = {}
+    for path, field, default in _leaves(model, model()):
+        name = ".".join(path)
+        if not node.has_parameter(name):
+            _declare_field(node, name, default, field)
+        value = node.get_parameter_or(name).value
+        if value is not None:
+            _store(values, path, value)
+    return validated(model, values, f"parameters of {node.get_name()}")
+
+
+def flatten(config: Config) -> dict[str, Any]:
+    """A configuration as ROS parameter names and values, for a parameter file.
+
+    Empty lists are left out: ROS cannot tell their type, and they are the defaults.
+    """
+    leaves = _leaves(type(config), config)
+    return {".".join(path): _to_ros(value) for path, _, value in leaves if value != ()}
+
+
+def describe(*models: type[Config]) -> str:
+    """The parameters of configurations as text: name, default, bounds and meaning, a line each."""
+    lines = []
+    for model in models:
+        for path, field, default in _leaves(model, model()):
+            bounds = [b for b in _bounds(field) if b is not None]
+            within = f", {bounds[0]:g} to {bounds[1]:g}" if len(bounds) == 2 else ""
+            name = ".".join(path)
+            shown = list(default) if isinstance(default, tuple) else default
+            lines.append(f"  {name} ({shown}{within})\n      {field.description or ''}")
+    return "\n".join(lines)
+
+
+def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
+    if default == ():
+        node.declare_parameter(name, Parameter.Type.DOUBLE_ARRAY, _descriptor(field))
+    else:
+        node.declare_parameter(name, _to_ros(default), _descriptor(field))
+
+
+def _leaves(
+    model: type[BaseModel], values: BaseModel, prefix: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], FieldInfo, Any]]:
+    for name, field in model.model_fields.items():
+        value = getattr(values, name)
+        if isinstance(value, BaseModel):
+            yield from _leaves(type(value), value, (*prefix, name))
+        else:
+            yield (*prefix, name), field, value
+
+
+def _to_ros(value: Any) -> Any:
+    if isinstance(value, (tuple, list)):
+        numbers = all(isinstance(item, (int, float)) for item in value)
+        return [float(item) if numbers else item for item in value]
+    return value
+
+
+def _descriptor(field: FieldInfo) -> ParameterDescriptor:
+    descriptor = ParameterDescriptor(description=field.description or "", read_only=True)
+    low, high = _bounds(field)
+    if low is not None and high is not None:
+        if field.annotation is float:
+            descriptor.floating_point_range = [FloatingPointRange(from_value=low, to_value=high)]
+        elif field.annotation is int:
+            whole = IntegerRange(from_value=int(low), to_value=int(high), step=1)
+            descriptor.integer_range = [whole]
+    return descriptor
+
+
+def _bounds(field: FieldInfo) -> tuple[float | None, float | None]:
+    low = high = None
+    for item in field.metadata:
+        if isinstance(item, annotated_types.Ge):
+            low = float(str(item.ge))
+        if isinstance(item, annotated_types.Le):
+            high = float(str(item.le))
+    return low, high
+
+
+def _store(values: dict[str, Any], path: tuple[str, ...], value: Any) -> None:
+    for part in path[:-1]:
+        values = values.setdefault(part, {})
+    is_array = hasattr(value, "tolist") or isinstance(value, tuple)
+    values[path[-1]] = list(value) if is_array else value

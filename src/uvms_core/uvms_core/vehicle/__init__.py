@@ -1,0 +1,33 @@
+"""The vehicle file: schema, checks, shorthand words, loading and writing."""
+
+from uvms_core.vehicle.arm import Arm, DragCylinder, Joint, Link
+from uvms_core.vehicle.environment import Environment
+from uvms_core.vehicle.hull import Attachment, Hull
+from uvms_core.vehicle.loader import (
+    dump_vehicle,
+    load_vehicle,
+    vehicle_from_data,
+    vehicle_from_yaml,
+)
+from uvms_core.vehicle.sensors import Sensors
+from uvms_core.vehicle.tether import Tether
+from uvms_core.vehicle.thrusters import Thruster
+from uvms_core.vehicle.vehicle import Vehicle
+
+__all__ = [
+    "Arm",
+    "Attachment",
+    "DragCylinder",
+    "Environment",
+    "Hull",
+    "Joint",
+    "Link",
+    "Sensors",
+    "Tether",
+    "Thruster",
+    "Vehicle",
+    "dump_vehicle",
+    "load_vehicle",
+    "vehicle_from_data",
+    "vehicle_from_yaml",
+]

@@ -1,0 +1,207 @@
+"""The arm: a serial chain of revolute joints, in Denavit-Hartenberg form or as URDF places them."""
+
+from typing import Annotated, Any
+
+from pydantic import Field, model_validator
+
+from uvms_core.vehicle.parts import (
+    AddedMass,
+    Inertia,
+    Part,
+    UnitVector,
+    Vector3,
+    unique_names,
+    word,
+)
+
+
+class Mounting(Part):
+    """Pose of one frame in another."""
+
+    position_m: Vector3 = Field(description="of the frame's origin, m")
+    rpy_deg: Vector3 = Field(default=(0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees")
+
+
+DH_FIELDS = ("a_m", "alpha_deg", "d_m")
+
+
+class Joint(Part):
+    """A revolute joint about z: its place by DH fields or by an `origin`; limits and friction.
+
+    DH: the link's frame is Rz(theta + offset) Tz(d) Tx(a) Rx(alpha) in the previous link's, so its
+    origin is at the link's far end. With an `origin`, as in URDF: the link's frame is
+    origin Rz(theta + offset) in the previous link's, so its origin is on the link's own joint.
+    """
+
+    name: str = Field(min_length=1, description="name in joint_states and joint_command")
+    a_m: float | None = Field(default=None, description="DH link length, m")
+    alpha_deg: float | None = Field(default=None, description="DH twist, degrees")
+    d_m: float | None = Field(default=None, description="DH offset along the joint axis, m")
+    origin: Mounting | None = Field(
+        default=None,
+        description="instead of the DH fields: the joint in the previous link's frame, angle zero",
+    )
+    offset_deg: float = Field(default=0.0, description="turn about z at joint angle zero, degrees")
+    lower_deg: float = Field(description="lower limit, degrees")
+    upper_deg: float = Field(description="upper limit, degrees")
+    rate_limit_deg_s: float = Field(gt=0.0, description="greatest rate, degrees/s")
+    acceleration_limit_deg_s2: float = Field(gt=0.0, description="greatest acceleration, deg/s^2")
+    effort_limit_nm: float = Field(gt=0.0, description="greatest torque, N m")
+    rotor_inertia_kg_m2: float = Field(
+        gt=0.0, description="of motor and gear, reflected to the joint, kg m^2"
+    )
+    viscous_friction_nm_s: float = Field(ge=0.0, description="N m per rad/s")
+    coulomb_friction_nm: float = Field(ge=0.0, description="sliding friction, N m")
+    coulomb_width_deg_s: float = Field(
+        gt=0.0, description="rate w of the smooth sliding friction tanh(rate / w), degrees/s"
+    )
+    stop_stiffness_nm_rad: float = Field(ge=0.0, description="of the end stops, N m per rad")
+    stop_dissipation_s_rad: float = Field(
+        ge=0.0, description="Hunt-Crossley dissipation of the end stops, s/rad"
+    )
+
+    @model_validator(mode="after")
+    def _placed_once(self) -> "Joint":
+        given = [name for name in DH_FIELDS if getattr(self, name) is not None]
+        if self.origin is not None and given:
+            raise ValueError(
+                f"is placed twice, by origin and by {', '.join(given)}; leave one of them away"
+            )
+        missing = [name for name in DH_FIELDS if name not in given]
+        if self.origin is None and missing:
+            raise ValueError(
+                f"lacks {', '.join(missing)}: a joint needs {', '.join(DH_FIELDS)}"
+                " (Denavit-Hartenberg) or an origin (as in URDF)"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _ordered(self) -> "Joint":
+        if not self.lower_deg < self.upper_deg:
+            raise ValueError(
+                f"lower_deg = {self.lower_deg:g} must be below upper_deg = {self.upper_deg:g}"
+            )
+        return self
+
+
+class DragCylinder(Part):
+    """A circular cylinder cut into strips for cross-flow drag."""
+
+    center_m: Vector3 = Field(description="its middle, link frame, m")
+    axis: UnitVector = Field(description="its axis, link frame")
+    radius_m: float = Field(gt=0.0, description="m")
+    length_m: float = Field(gt=0.0, description="m")
+    stations: int = Field(
+        default=3, ge=1, le=50, description="Gauss-Legendre stations along the axis"
+    )
+
+
+CYLINDER: Any = "cylinder"  # the word, of any field's type
+
+
+class Cylinder(DragCylinder):
+    """The shape behind every field of a link that says `cylinder`."""
+
+    axial_added_mass_fraction: float = Field(
+        default=0.1, ge=0.0, description="added mass along the axis as a part of the link's mass"
+    )
+
+
+class Link(Part):
+    """The body that joint i moves, in its frame i: the distal DH frame, or URDF's own.
+
+    What is not said follows from the section `cylinder`.
+    """
+
+    name: str = Field(min_length=1, description="name of the link")
+    cylinder: Cylinder | None = Field(
+        default=None, description="shape behind every field that says `cylinder`"
+    )
+    mass_kg: float = Field(gt=0.0, description="dry mass, kg")
+    volume_m3: Annotated[float, word("cylinder")] = Field(
+        default=CYLINDER, gt=0.0, description="displaced volume, m^3, or `cylinder`"
+    )
+    cg_m: Annotated[Vector3, word("cylinder")] = Field(
+        default=CYLINDER, description="m, or `cylinder`: its middle"
+    )
+    cb_m: Annotated[Vector3, word("cylinder")] = Field(
+        default=CYLINDER, description="m, or `cylinder`: its middle"
+    )
+    inertia_kg_m2: Annotated[Inertia, word("cylinder")] = Field(
+        default=CYLINDER,
+        description="about the CG, link axes, kg m^2: 3 diagonal values, 3 rows or `cylinder`",
+    )
+    added_mass: Annotated[AddedMass, word("cylinder")] = Field(
+        default=CYLINDER,
+        description="about the link frame's origin, SI: 6 diagonal values, 6 rows or `cylinder`",
+    )
+    drag: Annotated[tuple[DragCylinder, ...], word("cylinder")] = Field(
+        default=CYLINDER, description="cylinders that feel cross-flow drag, or `cylinder`"
+    )
+
+
+class DragCoefficient(Part):
+    """Cross-flow drag coefficient, linear in the logarithm of the Reynolds number."""
+
+    reynolds: tuple[float, ...] = Field(min_length=2, description="increasing, > 0")
+    cd: tuple[float, ...] = Field(min_length=2, description="coefficient at each, >= 0")
+
+    @model_validator(mode="after")
+    def _is_table(self) -> "DragCoefficient":
+        if len(self.reynolds) != len(self.cd):
+            raise ValueError(
+                f"reynolds has {len(self.reynolds)} values, cd has {len(self.cd)}; must be as many"
+            )
+        pairs = zip(self.reynolds, self.reynolds[1:], strict=False)
+        if self.reynolds[0] <= 0.0 or not all(low < high for low, high in pairs):
+            raise ValueError("reynolds must be > 0 and increasing")
+        if self.reynolds[-1] > 1e9:
+            raise ValueError(f"reynolds must be at most 1e9; the last is {self.reynolds[-1]:g}")
+        if min(self.cd) < 0.0:
+            raise ValueError("every cd must be >= 0")
+        return self
+
+
+SMOOTH_PLATE = DragCoefficient(
+    reynolds=(1.0, 10.0, 1e2, 1e3, 1e4, 1e5, 5e5, 1e6, 3e6, 1e7),
+    cd=(1.328, 0.42, 0.1328, 0.042, 0.01328, 0.0042, 0.00188, 0.00299, 0.00317, 0.00283),
+)
+"""Skin friction of a smooth flat plate by the Reynolds number of its length: Blasius's 1.328 /
+sqrt(Re) up to 5e5, where transition begins, then the ITTC 1957 line less Prandtl's 1700 / Re
+(Schlichting, Boundary-Layer Theory, ch. 7 and 21). A slender cylinder along the flow has a little
+more.
+"""
+
+
+class Arm(Part):
+    """Arm: mounting, joints, the link that each joint moves, and the tool on the last link."""
+
+    base: Mounting = Field(description="frame of joint 1 in the body frame")
+    joints: tuple[Joint, ...] = Field(min_length=1, description="from the base to the tool")
+    links: tuple[Link, ...] = Field(min_length=1, description="link i is moved by joint i")
+    tool: Mounting = Field(description="tool in the last link's frame")
+    stowed_deg: tuple[float, ...] = Field(description="joint angles with the arm stowed, degrees")
+    drag_coefficient: DragCoefficient = Field(
+        description="across the axes of all drag cylinders, by the diameter's Reynolds number"
+    )
+    friction_coefficient: DragCoefficient = Field(
+        default=SMOOTH_PLATE,
+        description="along the axes, by the length's Reynolds number and on the side's surface; "
+        "a smooth plate by default",
+    )
+
+    @model_validator(mode="after")
+    def _consistent(self) -> "Arm":
+        count = len(self.joints)
+        for name, values in (("links", self.links), ("stowed_deg", self.stowed_deg)):
+            if len(values) != count:
+                raise ValueError(f"{name} has {len(values)} entries for {count} joints")
+        unique_names(self.joints, "joint")
+        unique_names(self.links, "link")
+        for joint, angle in zip(self.joints, self.stowed_deg, strict=True):
+            if not joint.lower_deg <= angle <= joint.upper_deg:
+                raise ValueError(
+                    f"stowed_deg {angle:g} of joint {joint.name} is outside its limits"
+                    f" {joint.lower_deg:g} to {joint.upper_deg:g}"
+                )
+        return self

@@ -1,0 +1,105 @@
+"""Base class and vector types of the vehicle file, with the checks that physics asks of them."""
+
+from collections.abc import Callable, Sequence
+from typing import Annotated, Any
+
+import numpy as np
+from pydantic import AfterValidator, BeforeValidator, WrapValidator
+
+from uvms_core.config import Config
+
+Vector3 = tuple[float, float, float]
+Vector6 = tuple[float, float, float, float, float, float]
+Rows = tuple[tuple[float, ...], ...]
+
+_TOLERANCE = 1e-9  # relative; values in files are rounded decimals or full doubles
+
+
+class Part(Config):
+    """Base of every section of the vehicle file."""
+
+
+def word(*words: str) -> WrapValidator:
+    """Let a field hold one of these words in the file; the loader puts the value in its place."""
+
+    def validate(value: Any, handler: Callable[[Any], Any]) -> Any:
+        if not isinstance(value, str):
+            return handler(value)
+        if value in words:
+            return value
+        try:  # YAML reads 1e-3 as text
+            float(value)
+        except ValueError:
+            allowed = " or ".join(repr(each) for each in words)
+            raise ValueError(f"must be a value or the word {allowed}") from None
+        return handler(value)
+
+    return WrapValidator(validate)
+
+
+def _square(size: int) -> BeforeValidator:
+    """A list of `size` numbers is the diagonal of a matrix of that size."""
+
+    def expand(value: Any) -> Any:
+        if not isinstance(value, Sequence) or isinstance(value, str):
+            return value
+        if len(value) != size:
+            raise ValueError(f"needs {size} diagonal values or {size} rows, has {len(value)}")
+        if any(isinstance(item, Sequence) and not isinstance(item, str) for item in value):
+            return value
+        return [[x if i == j else 0.0 for j in range(size)] for i, x in enumerate(value)]
+
+    return BeforeValidator(expand)
+
+
+def _symmetric(rows: Rows) -> np.ndarray:
+    lengths = {len(row) for row in rows}
+    if lengths != {len(rows)}:
+        raise ValueError(f"needs {len(rows)} values in each row, has rows of {sorted(lengths)}")
+    matrix = np.array(rows)
+    if np.abs(matrix - matrix.T).max() > _TOLERANCE * max(np.abs(matrix).max(), 1.0):
+        raise ValueError("must be symmetric")
+    return matrix
+
+
+def _is_inertia(rows: Rows) -> Rows:
+    moments = np.linalg.eigvalsh(_symmetric(rows))
+    if moments[0] <= 0.0:
+        raise ValueError(f"must be positive definite; its least principal moment is {moments[0]:g}")
+    if moments[2] > (moments[0] + moments[1]) * (1.0 + _TOLERANCE):
+        text = ", ".join(f"{moment:g}" for moment in moments)
+        raise ValueError(
+            f"no body has principal moments {text}: the largest exceeds the others' sum"
+        )
+    return rows
+
+
+def _is_added_mass(rows: Rows) -> Rows:
+    values = np.linalg.eigvalsh(_symmetric(rows))
+    if values[0] < -_TOLERANCE * max(values[-1], 1.0):
+        raise ValueError(f"must be positive semidefinite; its least eigenvalue is {values[0]:g}")
+    return rows
+
+
+def _is_unit(vector: Vector3) -> Vector3:
+    length = float(np.linalg.norm(vector))
+    if abs(length - 1.0) > 1e-6:
+        raise ValueError(f"must be a unit vector; its length is {length:g}")
+    return vector
+
+
+Inertia = Annotated[Rows, _square(3), AfterValidator(_is_inertia)]
+"""(3, 3) kg m^2, positive definite, principal moments within the triangle inequality."""
+
+AddedMass = Annotated[Rows, _square(6), AfterValidator(_is_added_mass)]
+"""(6, 6) symmetric positive semidefinite, order (X Y Z K M N), kg, kg m and kg m^2."""
+
+UnitVector = Annotated[Vector3, AfterValidator(_is_unit)]
+
+
+def unique_names(parts: Sequence[Any], what: str) -> None:
+    """Raise ValueError if two parts share a name."""
+    names = [part.name for part in parts]
+    twice = sorted({name for name in names if names.count(name) > 1})
+    if twice:
+        raise ValueError(f"{what} names must differ; used more than once: {', '.join(twice)}")

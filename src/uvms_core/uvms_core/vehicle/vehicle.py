@@ -1,0 +1,54 @@
+"""The whole vehicle as its file describes it."""
+
+from pydantic import Field, field_validator
+
+from uvms_core.vehicle.arm import Arm
+from uvms_core.vehicle.environment import Environment
+from uvms_core.vehicle.hull import Hull
+from uvms_core.vehicle.parts import Part, unique_names
+from uvms_core.vehicle.sensors import Sensors
+from uvms_core.vehicle.tether import Tether
+from uvms_core.vehicle.thrusters import Thruster
+
+
+class Vehicle(Part):
+    """Vehicle, arm, actuators, sensors and the water around them; mirrors the YAML file.
+
+    Made by `load_vehicle`, which puts values in the place of the file's shorthand words.
+    """
+
+    name: str = Field(min_length=1, description="name of the vehicle; its ROS namespace")
+    environment: Environment = Field(description="water, gravity, datum")
+    hull: Hull = Field(description="the vehicle without its arm")
+    thrusters: tuple[Thruster, ...] = Field(min_length=1, description="any number of them")
+    arm: Arm = Field(description="serial chain of revolute joints")
+    sensors: Sensors = Field(description="rates, lever arms, noise")
+    tether: Tether | None = Field(
+        default=None, description="how the trim changes with depth; none: it does not"
+    )
+
+    @field_validator("thrusters")
+    @classmethod
+    def _named_once(cls, value: tuple[Thruster, ...]) -> tuple[Thruster, ...]:
+        unique_names(value, "thruster")
+        return value
+
+    @property
+    def n_joints(self) -> int:
+        """Number of joints of the arm."""
+        return len(self.arm.joints)
+
+    @property
+    def n_thrusters(self) -> int:
+        """Number of thrusters."""
+        return len(self.thrusters)
+
+    @property
+    def joint_names(self) -> tuple[str, ...]:
+        """Names of the joints, from the base to the tool."""
+        return tuple(joint.name for joint in self.arm.joints)
+
+    @property
+    def thruster_names(self) -> tuple[str, ...]:
+        """Names of the thrusters, in the order of thrust vectors."""
+        return tuple(thruster.name for thruster in self.thrusters)

@@ -1,0 +1,5 @@
+"""The paper's equations in plain numpy, body by body over ground: what the kernels are held to."""
+
+from uvms_dynamics.numpy_reference.coriolis import body_inertia, coriolis_matrix
+
+__all__ = ["body_inertia", "coriolis_matrix"]

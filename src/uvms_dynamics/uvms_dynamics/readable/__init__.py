@@ -1,5 +1,0 @@
-"""The paper's equations in plain numpy, body by body over ground: what the kernels are held to."""
-
-from uvms_dynamics.readable.coriolis import body_inertia, coriolis_matrix
-
-__all__ = ["body_inertia", "coriolis_matrix"]

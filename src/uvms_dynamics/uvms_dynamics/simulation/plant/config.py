@@ -1,0 +1,74 @@
+"""What a run of the plant starts from and how it is integrated."""
+
+import numpy as np
+from pydantic import Field
+
+from uvms_core.config import Config
+from uvms_core.errors import ConfigError
+from uvms_core.signals import Array, to_nanoseconds
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
+from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
+
+
+class PlantConfig(Config):
+    """Integration step, control period, start and current."""
+
+    step_s: float = Field(0.005, gt=0.0, le=0.05, description="Runge-Kutta step, s")
+    control_period_s: float = Field(
+        0.05, gt=0.0, le=1.0, description="time between commands, a multiple of step_s, s"
+    )
+    initial_position_m: tuple[float, float, float] = Field(
+        (0.0, 0.0, 10.0), description="of the body origin in map_ned, m"
+    )
+    initial_rpy_deg: tuple[float, float, float] = Field(
+        (0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees"
+    )
+    initial_velocity: tuple[float, float, float, float, float, float] = Field(
+        (0.0,) * 6, description="nu over ground, body frame, m/s and rad/s"
+    )
+    initial_joints_deg: tuple[float, ...] = Field(
+        (), description="joint angles, degrees; empty: the vehicle's stowed pose"
+    )
+    current_ned_m_s: tuple[float, float, float] = Field(
+        (0.0, 0.0, 0.0), description="velocity of the water in map_ned, m/s"
+    )
+
+
+def steps_in(period: int, config: PlantConfig, what: str) -> int:
+    """How many plant steps a period (ns) holds; ConfigError unless it is a whole number."""
+    step = to_nanoseconds(config.step_s)
+    if period < step or period % step:
+        raise ConfigError(
+            f"{what}: its period of {period / 1e9:g} s must be a multiple of"
+            f" step_s = {config.step_s:g} s"
+        )
+    return period // step
+
+
+def initial_joints(vehicle: Vehicle, config: PlantConfig) -> Array:
+    """Joint angles (n,) at the start, rad; ConfigError for a wrong number or beyond a limit."""
+    degrees = config.initial_joints_deg or vehicle.arm.stowed_deg
+    if len(degrees) != vehicle.n_joints:
+        raise ConfigError(
+            f"initial_joints_deg: has {len(degrees)} values for {vehicle.n_joints} joints"
+        )
+    for joint, angle in zip(vehicle.arm.joints, degrees, strict=True):
+        if not joint.lower_deg <= angle <= joint.upper_deg:
+            raise ConfigError(
+                f"initial_joints_deg: {angle:g} of joint {joint.name} is outside its limits"
+                f" {joint.lower_deg:g} to {joint.upper_deg:g}"
+            )
+    return np.radians(degrees)
+
+
+def initial_state(vehicle: Vehicle, config: PlantConfig) -> Array:
+    """State of the integrator at t = 0: joints at rest, no thrust."""
+    state = np.zeros(JOINTS + 2 * vehicle.n_joints + vehicle.n_thrusters)
+    quaternion = rpy_to_quat(*np.radians(config.initial_rpy_deg))
+    state[:QUATERNION] = config.initial_position_m
+    state[QUATERNION:VELOCITY] = quaternion
+    state[VELOCITY:JOINTS] = config.initial_velocity
+    state[VELOCITY : VELOCITY + 3] -= quat_to_matrix(quaternion).T @ config.current_ned_m_s
+    state[JOINTS : JOINTS + vehicle.n_joints] = initial_joints(vehicle, config)
+    return state

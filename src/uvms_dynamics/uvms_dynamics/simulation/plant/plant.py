@@ -1,0 +1,138 @@
+"""The plant: vehicle, arm, water, thrusters and sensors, advanced one control period at a time."""
+
+import numpy as np
+
+from uvms_core.errors import SignalError
+from uvms_core.signals import (
+    Array,
+    JointCommand,
+    ThrusterCommand,
+    to_nanoseconds,
+    to_seconds,
+)
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.kernels.layout import EFFORT
+from uvms_dynamics.model.vehicle_table import build_model
+from uvms_dynamics.simulation.integrator import (
+    JOINTS,
+    System,
+    advance,
+    make_scratch,
+)
+from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state, steps_in
+from uvms_dynamics.simulation.plant.divergence import check_finite
+from uvms_dynamics.simulation.plant.stability import check_step
+from uvms_dynamics.simulation.plant.truth import (
+    PlantTruth,
+    true_disturbance,
+    true_joints,
+    true_odometry,
+)
+from uvms_dynamics.simulation.sensors import SensorFrame, SensorSuite
+from uvms_dynamics.simulation.sensors.mounting import Trajectory
+from uvms_dynamics.simulation.thrusters import build_thrusters
+
+
+class Plant:
+    """One augmented system of 6 + n degrees of freedom, its thrusters and its sensors.
+
+    `sense()` and `truth()` tell of the present stamp, `step(...)` goes one control period on.
+    Raises ConfigError where periods are no multiples of the step or the step is unstable.
+    """
+
+    def __init__(self, vehicle: Vehicle, config: PlantConfig, seed: int) -> None:
+        check_step(vehicle, config)
+        self._vehicle, self._config = vehicle, config
+        self._period = to_nanoseconds(config.control_period_s)
+        self._step = to_nanoseconds(config.step_s)
+        steps = steps_in(self._period, config, "control_period_s")
+        self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
+        current = np.array(config.current_ned_m_s, dtype=float)
+        self._system = System(build_model(vehicle), build_thrusters(vehicle), current)
+        self._scratch = make_scratch(self._system)
+        self._state = initial_state(vehicle, config)
+        self._states = np.empty((steps + 1, self._state.shape[0]))
+        self._rates = np.empty_like(self._states)
+        self._effort = np.zeros(vehicle.n_joints)
+        self._stamp = 0
+        self._start()
+
+    @property
+    def stamp(self) -> int:
+        """Present simulation time, ns."""
+        return self._stamp
+
+    def sense(self) -> SensorFrame:
+        """All samples of the control period that ends now; at the start, those of t = 0."""
+        return self._frame
+
+    def truth(self) -> PlantTruth:
+        """True odometry, joints, disturbance and thrust at the present stamp.
+
+        Accelerations are those just before the stamp, under the commands of the past period.
+        """
+        state, system = self._state, self._system
+        return PlantTruth(
+            true_odometry(self._stamp, state, system.current),
+            true_joints(self._stamp, state, self._effort),
+            true_disturbance(self._stamp, system.model, state, self._rate, system.current),
+            state[JOINTS + 2 * self._vehicle.n_joints :].copy(),
+        )
+
+    def safe_thrust(self) -> ThrusterCommand:
+        """What the plant falls back to where no thruster command comes: no thrust."""
+        return ThrusterCommand(self._stamp, np.zeros(self._vehicle.n_thrusters))
+
+    def safe_effort(self) -> JointCommand:
+        """What the plant falls back to where no joint command comes: no torque."""
+        return JointCommand(self._stamp, np.zeros(self._vehicle.n_joints))
+
+    def step(self, thruster: ThrusterCommand, joints: JointCommand) -> None:
+        """Go on by one control period under constant commands; drives apply what they can.
+
+        Raises SignalError for a command of wrong size or that is not finite (the plant then stays
+        where it is), PlantDiverged where the state leaves the finite numbers.
+        """
+        thrust = _checked(thruster.thrust, self._vehicle.thruster_names, "thruster_command", "N")
+        effort = _checked(joints.effort, self._vehicle.joint_names, "joint_command", "N m")
+        limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
+        self._effort = np.clip(effort, -limit, limit)
+        began, self._stamp = self._stamp, self._stamp + self._period
+        self._integrate(thrust, self._states, self._rates)
+        stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
+        self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
+
+    def _start(self) -> None:
+        """Derivative and sensor readings of t = 0, without commands."""
+        idle = np.zeros(self._vehicle.n_thrusters)
+        self._integrate(idle, self._states[:1], self._rates[:1])
+        self._frame = self._sample((0,), self._states[:1], self._rates[:1])
+
+    def _integrate(self, thrust: Array, states: Array, rates: Array) -> None:
+        """As many steps as the tables have rows after the first; the last is at the stamp."""
+        step = to_seconds(self._step)
+        advance(self._system, self._state, thrust, self._effort, step, self._scratch, states, rates)
+        self._rate = rates[-1].copy()
+        check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)
+
+    def _sample(self, stamps: tuple[int, ...], states: Array, rates: Array) -> SensorFrame:
+        trajectory = Trajectory(stamps, states, rates, self._system.current)
+        joints = true_joints(self._stamp, self._state, self._effort)
+        return self._sensors.sample(trajectory, joints.position, joints.velocity, joints.effort)
+
+
+def _checked(values: Array, names: tuple[str, ...], topic: str, unit: str) -> Array:
+    """The command as an array, or SignalError."""
+    array = np.array(values, dtype=float)
+    if array.shape != (len(names),):
+        raise SignalError(
+            f"{topic}: has shape {array.shape}, needs ({len(names)},) for {', '.join(names)}"
+        )
+    if not np.isfinite(array).all():
+        bad = ", ".join(
+            f"{name} = {value} {unit}"
+            for name, value in zip(names, array, strict=True)
+            if not np.isfinite(value)
+        )
+        raise SignalError(f"{topic}: every value must be finite; got {bad}")
+    return array

@@ -1,0 +1,74 @@
+"""Ground truth of the plant: for logs and reports, never for a node of the loop."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uvms_core.signals import Array, DisturbanceBudget, JointStates, Odometry
+from uvms_dynamics.kernels import coupling_wrench, restoring_wrench
+from uvms_dynamics.kernels.hull import hull_hydrodynamic_wrench
+from uvms_dynamics.kernels.layout import HULL
+from uvms_dynamics.kernels.layout import JOINTS as JOINTS_COUNT
+from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
+from uvms_dynamics.model.vehicle_table import Model
+from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
+
+
+@dataclass(frozen=True)
+class PlantTruth:
+    """True pose and velocity over ground, joints, disturbance and thrust."""
+
+    odometry: Odometry
+    joints: JointStates
+    disturbance: DisturbanceBudget
+    thrust: Array  # (m,) N
+
+
+def true_odometry(stamp: int, state: Array, current: Array) -> Odometry:
+    """Pose and velocity over ground of a state of the integrator, without uncertainty."""
+    nu = state[VELOCITY:JOINTS].copy()
+    nu[:3] += quat_to_matrix(state[QUATERNION:VELOCITY]).T @ current
+    zero = np.zeros((6, 6))
+    return Odometry(stamp, state[:3].copy(), state[QUATERNION:VELOCITY].copy(), nu, zero, zero)
+
+
+def true_joints(stamp: int, state: Array, effort: Array) -> JointStates:
+    """Joint angles, rates and the torque that the drives apply."""
+    n = effort.shape[0]
+    q, q_dot = state[JOINTS : JOINTS + n], state[JOINTS + n : JOINTS + 2 * n]
+    return JointStates(stamp, q.copy(), q_dot.copy(), effort.copy())
+
+
+def true_disturbance(
+    stamp: int, model: Model, state: Array, rate: Array, current: Array
+) -> DisturbanceBudget:
+    """What acts on the vehicle besides the thrusters, from the true state and accelerations.
+
+    restoring: eq. (13). coupling: eq. (14)-(15) with the true accelerations, arm in moving water.
+    external: what the current does to the hull, the wrench of the water moving as it does less
+    that of still water at the same motion over ground,
+    W(nu_r, nu_r_dot) - W(nu, nu_dot), W = -(M_A nu_dot + C_A nu + D nu).
+    """
+    n = int(model[HULL, JOINTS_COUNT])
+    quat, nu_r, nu_r_dot = state[QUATERNION:VELOCITY], state[VELOCITY:JOINTS], rate[VELOCITY:JOINTS]
+    q, q_dot = state[JOINTS : JOINTS + n], state[JOINTS + n : JOINTS + 2 * n]
+    q_ddot = rate[JOINTS + n : JOINTS + 2 * n]
+    return DisturbanceBudget(
+        stamp,
+        restoring_wrench(model, quat, q),
+        coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot),
+        _current_on_hull(model, quat, nu_r, nu_r_dot, current),
+    )
+
+
+def _current_on_hull(
+    model: Model, quat: Array, nu_r: Array, nu_r_dot: Array, current: Array
+) -> Array:
+    if not current.any():
+        return np.zeros(6)
+    drift = quat_to_matrix(quat).T @ current
+    nu, nu_dot = nu_r.copy(), nu_r_dot.copy()
+    nu[:3] += drift
+    nu_dot[:3] -= skew(nu_r[3:]) @ drift
+    moving = hull_hydrodynamic_wrench(model, nu_r, nu_r_dot)
+    return moving - hull_hydrodynamic_wrench(model, nu, nu_dot)

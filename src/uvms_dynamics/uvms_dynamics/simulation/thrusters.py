@@ -1,0 +1,30 @@
+"""Thrusters: what they do to the vehicle and how they follow a command."""
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.kernels.arithmetic import bounded
+from uvms_dynamics.kernels.jit import inner
+from uvms_dynamics.model.thruster_matrix import thruster_matrix
+
+Thrusters = Array
+"""Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, 1 / time
+constant, slew limit."""
+
+LIMIT, PER_TIME_CONSTANT, SLEW = np.arange(6, 9)
+
+
+def build_thrusters(vehicle: Vehicle) -> Thrusters:
+    """Thruster tables of a vehicle."""
+    parts = vehicle.thrusters
+    drives = [[part.limit_n, 1.0 / part.time_constant_s, part.slew_limit_n_s] for part in parts]
+    return np.hstack([thruster_matrix(vehicle).T, drives])
+
+
+@inner
+def thrust_rate(thrusters, i, thrust, command):
+    """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
+    limit, slew = thrusters[i, LIMIT], thrusters[i, SLEW]
+    wanted = bounded(command, limit)
+    return bounded((wanted - thrust) * thrusters[i, PER_TIME_CONSTANT], slew)

@@ -1,0 +1,133 @@
+"""The gate releases the same ticks with the same inputs, whatever the order of arrival."""
+
+import itertools
+from dataclasses import dataclass
+
+from hypothesis import given
+from hypothesis import strategies as st
+
+from uvms_core.tick_gate import Covering, Periodic, Previous, Same, TickGate
+
+DT = 50
+
+
+@dataclass(frozen=True)
+class Window:
+    end: int
+
+
+def gate(lockstep: bool = True) -> TickGate:
+    inputs = {
+        "odometry": Same(),
+        "joints": Same(),
+        "fast": Periodic(10),
+        "slow": Periodic(125),
+        "feedback": Previous(DT),
+    }
+    return TickGate(inputs, "odometry", lockstep)
+
+
+def tick_inputs(stamp: int) -> list[tuple[str, int]]:
+    window = range(max(stamp - DT + 1, 0), stamp + 1)
+    fast = [("fast", t) for t in window if t % 10 == 0]
+    slow = [("slow", t) for t in window if t % 125 == 0]
+    return [("odometry", stamp), ("joints", stamp), *fast, *slow]
+
+
+@given(st.data())
+def test_ticks_do_not_depend_on_the_order_of_arrival(data):
+    gated = gate()
+    for stamp in range(0, 5 * DT, DT):
+        arrivals = tick_inputs(stamp)
+        per_topic = {name: [t for n, t in arrivals if n == name] for name, _ in arrivals}
+        order = data.draw(st.permutations([name for name, _ in arrivals]))
+        released = []
+        for name in order:  # the order within one topic is kept, as by DDS
+            when = per_topic[name].pop(0)
+            released.append(gated.push(name, when, (name, when)))
+        assert not any(released[:-1])
+        (tick,) = released[-1]
+        assert tick.stamp == stamp
+        expected = tuple(item for item in arrivals if item[0] == "fast")
+        assert tick["fast"] == expected
+        assert tick["slow"] == tuple(item for item in arrivals if item[0] == "slow")
+        assert tick["feedback"] == (("feedback", stamp - DT) if stamp else None)
+        gated.push("feedback", stamp, ("feedback", stamp))
+
+
+def test_every_input_is_waited_for():
+    for missing in ("odometry", "joints", "fast", "slow"):
+        gated = gate()
+        pushed = [item for item in tick_inputs(0) if item[0] != missing]
+        assert not any(gated.push(name, when, None) for name, when in pushed)
+        assert gated.waiting_for() == (missing,)
+
+
+def test_feedback_of_the_tick_before_is_waited_for():
+    gated = gate()
+    for name, when in itertools.chain(tick_inputs(0), tick_inputs(DT)):
+        ticks = gated.push(name, when, (name, when))
+    assert ticks == []
+    assert gated.waiting_for() == ("feedback",)
+    assert gated.push("feedback", 0, "thrust")[0].stamp == DT
+
+
+def test_a_loop_that_the_plant_broke_by_time_out_closes_again():
+    gated = gate()
+    for stamp in (0, DT, 2 * DT):  # feedback never comes: the plant goes on by time-out
+        for name, when in tick_inputs(stamp):
+            ticks = gated.push(name, when, (name, when))
+    (tick,) = ticks
+    assert tick.stamp == 2 * DT
+    assert tick["feedback"] is None
+    assert gated.abandoned == 1
+
+
+def test_real_time_goes_by_the_trigger_with_the_newest_inputs():
+    gated = gate(lockstep=False)
+    gated.push("fast", 0, "f0")
+    gated.push("joints", 0, "j0")
+    (tick,) = gated.push("odometry", 0, "o0")
+    assert (tick["joints"], tick["fast"], tick["slow"]) == ("j0", ("f0",), ())
+    assert gated.push("odometry", DT, "o1")[0]["joints"] == "j0"
+
+
+def test_real_time_waits_for_an_input_that_never_came():
+    gated = gate(lockstep=False)
+    assert gated.push("odometry", 0, "o0") == []
+    assert [tick.stamp for tick in gated.push("joints", 0, "j0")] == [0]
+
+
+def test_repeated_and_older_triggers_are_refused_and_counted():
+    gated = gate(lockstep=False)
+    gated.push("joints", 0, "j0")
+    assert len(gated.push("odometry", DT, "a")) == 1
+    assert gated.push("odometry", DT, "b") == []
+    assert gated.push("odometry", 0, "c") == []
+    assert gated.late == 2
+
+
+def test_a_reference_covers_its_half_open_window():
+    gated = TickGate({"tick": Same(), "reference": Covering()}, "tick", lockstep=True)
+    assert gated.push("tick", 0, None) == []
+    assert gated.push("reference", 0, Window(100))[0]["reference"] == Window(100)
+    gated.push("reference", 100, Window(200))
+    assert gated.push("tick", 50, None)[0]["reference"] == Window(100)
+    assert gated.push("tick", 100, None)[0]["reference"] == Window(200)
+    assert gated.push("tick", 200, None) == []
+
+
+def test_a_node_beside_the_loop_keeps_its_open_ticks_in_order():
+    gated = TickGate({"a": Same(), "b": Same()}, "a", lockstep=True, in_loop=False)
+    assert gated.push("a", 0, "a0") == gated.push("a", DT, "a1") == []
+    assert [tick.stamp for tick in gated.push("b", 0, "b0")] == [0]
+    assert [tick.stamp for tick in gated.push("b", DT, "b1")] == [DT]
+    assert gated.abandoned == 0
+
+
+def test_a_trigger_faster_than_the_ticks():
+    gated = TickGate({"imu": Periodic(10)}, "imu", lockstep=True, every=DT)
+    released = [gated.push("imu", when, when) for when in range(0, 2 * DT + 1, 10)]
+    ticks = [tick for some in released for tick in some]
+    assert [tick.stamp for tick in ticks] == [0, DT, 2 * DT]
+    assert ticks[1]["imu"] == (10, 20, 30, 40, 50)
