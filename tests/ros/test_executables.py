@@ -7,10 +7,13 @@ from pathlib import Path
 import pytest
 from graph import own_domain
 
-from uvms_core import topics
+from uvms_core import registry, topics
 
 PREFIX = Path(sys.prefix)
-EXECUTABLES = [PREFIX / "lib" / peers.package / node for node, peers in topics.NODES.items()]
+EXECUTABLES = [
+    PREFIX / "lib" / registry.load(registry.NODES, node).__module__.partition(".")[0] / node
+    for node in topics.NODES
+]
 LISTENER = """
 import sys, time, rclpy
 from rosgraph_msgs.msg import Clock
