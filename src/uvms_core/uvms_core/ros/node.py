@@ -62,7 +62,13 @@ class UvmsNode(Node):
     when an input is refused: the fault is logged, counted and reported on /diagnostics.
     """
 
-    def __init__(self, name: str, **options: Any) -> None:
+    role = ""
+    """Its name in the graph, and its row in the table of topics."""
+    configurations: tuple[type[Config], ...] = ()
+    """Configurations whose fields are its parameters."""
+
+    def __init__(self, **options: Any) -> None:
+        name = self.role
         super().__init__(name, **options)
         common = self.config(NodeConfig)
         self.vehicle: Vehicle = load_vehicle(common.vehicle_file or None)

@@ -19,6 +19,7 @@ from uvms_core.signals import (
     to_seconds,
 )
 from uvms_dynamics.simulation import Plant, PlantConfig
+from uvms_dynamics.simulation.publication import plant_outputs
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
@@ -53,13 +54,14 @@ class PlantNode(UvmsNode):
     Services: `start` (begin, where `auto_start` is false) and `pause` (hold simulated time).
     """
 
+    role = "plant"
     configurations = (
         PaceConfig,
         PlantConfig,
     )
 
     def __init__(self, **options) -> None:
-        super().__init__("plant", **options)
+        super().__init__(**options)
         self._plant = Plant(self.vehicle, self.config(PlantConfig), self.seed)
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
@@ -134,19 +136,8 @@ class PlantNode(UvmsNode):
 
     def _publish_tick(self) -> None:
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
-        self.send(topics.CLOCK, stamp)
-        self.send(topics.TRUE_ODOMETRY, truth.odometry)
-        self.send(topics.TRUE_JOINT_STATES, truth.joints)
-        self.send(topics.TRUE_DISTURBANCE, truth.disturbance)
-        self.send(topics.JOINT_STATES, sensors.joints)
-        for topic, samples in (
-            (topics.DVL, sensors.dvl),
-            (topics.PRESSURE, sensors.pressure),
-            (topics.GPS, sensors.gps),
-            (topics.IMU, sensors.imu),
-        ):
-            for sample in samples:
-                self.send(topic, sample)
+        for topic, signal in plant_outputs(stamp, sensors, truth):
+            self.send(topic, signal)
         self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
 
     @property
