@@ -38,6 +38,12 @@ setup(
         "console_scripts": [
             "uvms = uvms_bringup.cli:main",
             "state_publisher = uvms_bringup.ros.state_publisher:main",
-        ]
+        ],
+        "uvms.commands": [
+            "added-mass = uvms_bringup.commands.added_mass:COMMAND",
+            "replay = uvms_bringup.commands.replay:COMMAND",
+            "run = uvms_bringup.commands.run:COMMAND",
+            "simulate = uvms_bringup.commands.simulate:COMMAND",
+        ],
     },
 )

@@ -27,5 +27,11 @@ setup(
         "uvms_dynamics",
     ],
     zip_safe=False,
-    entry_points={},
+    entry_points={
+        "uvms.commands": [
+            "identify = uvms_analysis.commands.identify:COMMAND",
+            "report = uvms_analysis.commands.report:COMMAND",
+            "validate = uvms_analysis.commands.validate:COMMAND",
+        ],
+    },
 )
