@@ -1,4 +1,4 @@
-"""Parts declare what the table of topics says of their role, and run in the order of their inputs."""
+"""Parts declare what the table of topics says of their role, and run in that order."""
 
 from types import SimpleNamespace
 

@@ -1,0 +1,22 @@
+"""The command `uvms report`: figures and a page about a run."""
+
+from argparse import ArgumentParser, Namespace
+
+from uvms_core.command import Command
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `uvms report`."""
+    parser.add_argument("log", metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
+
+
+def run(options: Namespace) -> int:
+    """Draw the figures, write the page and print where it is."""
+    from uvms_analysis.report import report
+
+    print(report(options.log, options.output))
+    return 0
+
+
+COMMAND = Command("figures and an HTML page about a run", add_arguments, run)
