@@ -122,9 +122,14 @@ def _add_replay(commands: Any) -> None:
 def _add_report(commands: Any) -> None:
     text = "figures and an HTML page about a run"
     command = commands.add_parser("report", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    command.set_defaults(do=report)
+    command.set_defaults(do=make_report)
     command.add_argument("log", metavar="RUN.mcap", help="log of a run")
     command.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
+    command.add_argument(
+        "--picture",
+        metavar="FILE",
+        help="only draw the vehicle at work, in 3-D, to this file (png, jpg, pdf or svg)",
+    )
 
 
 def _session(options: argparse.Namespace, pace: Pace) -> Session:
@@ -168,12 +173,14 @@ def replay(options: argparse.Namespace) -> int:
     return play(options.log, into=options.into, rate=options.rate, output=options.output)
 
 
-def report(options: argparse.Namespace) -> int:
+def make_report(options: argparse.Namespace) -> int:
     """`uvms report`."""
-    from uvms_analysis.report import report as make  # matplotlib takes its time
+    from uvms_analysis.report import draw_scene, report  # matplotlib takes its time
 
-    page = make(options.log, options.output)
-    print(page)
+    if options.picture is not None:
+        print(draw_scene(options.log, options.picture))
+    else:
+        print(report(options.log, options.output))
     return 0
 
 
