@@ -9,7 +9,7 @@ import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from uvms_bringup.errors import ScenarioError
-from uvms_bringup.locate import scenario_folder
+from uvms_bringup.locate import known_scenarios
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
@@ -157,11 +157,6 @@ def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, 
         initial_joints(vehicle, plant),
     )
     return position, matrix_to_quat(R_world_tool)
-
-
-def known_scenarios() -> dict[str, Path]:
-    """Scenarios that come with the project, by name."""
-    return {path.stem: path for path in sorted(scenario_folder().glob("*.yaml"))}
 
 
 def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Scenario:

@@ -7,7 +7,6 @@ setup(
     version="0.1.0",
     description="S-surface and dynamic controller and thrust allocation of an underwater vehicle-manipulator system.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -24,6 +23,7 @@ setup(
         "uvms_core",
         "uvms_dynamics",
     ],
+    extras_require={"test": ["daqp", "hypothesis", "pytest", "quadprog"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [

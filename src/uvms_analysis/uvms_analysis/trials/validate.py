@@ -1,12 +1,11 @@
 """`uvms validate`: hold the model against recorded trials."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
+from uvms_analysis.trials.outcome import CONSTANT, DYNAMIC, QUASI_STATIC, Outcome, table
 from uvms_analysis.trials.predict import (
     Course,
-    Prediction,
     constant,
     drive_model,
     dynamic,
@@ -14,20 +13,9 @@ from uvms_analysis.trials.predict import (
     quasi_static,
 )
 from uvms_analysis.trials.read import Trial, read_trials
-from uvms_analysis.trials.score import AXES, medians, scores
-from uvms_analysis.trials.sensor import sensor_tilts
-from uvms_analysis.trials.table import SENSOR, Scores, table_text, write_csv
+from uvms_analysis.trials.score import AXES, medians
+from uvms_analysis.trials.table import Scores, table_text, write_csv
 from uvms_core.vehicle import Vehicle, load_vehicle
-
-DYNAMIC, QUASI_STATIC, CONSTANT = "dynamic model", "quasi-static", "constant"
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """A trial and what each model says of it."""
-
-    trial: Trial
-    said: dict[str, Prediction]
 
 
 def outcomes(vehicle: Vehicle, trials: list[Trial], trim: bool = True) -> Iterator[Outcome]:
@@ -38,16 +26,6 @@ def outcomes(vehicle: Vehicle, trials: list[Trial], trim: bool = True) -> Iterat
         moving = dynamic(course, model, load, trim)
         still = quasi_static(course, model, load, moving.depth)
         yield Outcome(trial, {DYNAMIC: moving, QUASI_STATIC: still, CONSTANT: constant(course)})
-
-
-def table(found: list[Outcome]) -> Scores:
-    """Scores by model, over the trials."""
-    models = found[0].said
-    rows = {m: [scores(each.trial, each.said[m].tilt) for each in found] for m in models}
-    if (tilts := sensor_tilts([each.trial for each in found])) is not None:
-        pairs = zip(found, tilts, strict=True)
-        rows[SENSOR] = [scores(each.trial, tilt) for each, tilt in pairs]
-    return rows
 
 
 def remarks(rows: Scores) -> list[str]:
@@ -81,7 +59,7 @@ def validate(
     folder = Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     for each in found:
-        write_csv(each.trial, each.said[DYNAMIC].tilt, folder)
+        write_csv(each.trial, each.predicted[DYNAMIC].tilt, folder)
     (folder / "table.txt").write_text(text + "\n", encoding="utf-8")
     if figures:
         from uvms_analysis.trials.figures import draw  # matplotlib takes its time
