@@ -4,7 +4,8 @@ import time
 from dataclasses import dataclass
 
 from uvms_bringup.scenario import Scenario
-from uvms_control import Controller, ThrustAllocator
+from uvms_control import AllocationMethod, ControlLaw
+from uvms_core.plugin import create
 from uvms_core.signals import (
     Allocation,
     DisturbanceBudget,
@@ -19,7 +20,7 @@ from uvms_core.tick_gate import Covering
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import Plant
 from uvms_dynamics.simulation.plant import PlantTruth, SensorFrame
-from uvms_observer import DisturbanceObserver, NavigationFilter
+from uvms_observer import NavigationEstimator, ObserverLaw
 from uvms_planner import MotionPlanner, PlannerStep
 
 
@@ -47,11 +48,11 @@ class Loop:
 
     def __init__(self, scenario: Scenario, vehicle: Vehicle) -> None:
         self.plant = Plant(vehicle, scenario.plant, scenario.seed)
-        self.navigation = NavigationFilter(vehicle, scenario.navigation)
-        self.observer = DisturbanceObserver(vehicle, scenario.observer)
+        self.navigation: NavigationEstimator = create(scenario.navigation, vehicle)
+        self.observer: ObserverLaw = create(scenario.observer, vehicle)
         self.planner = MotionPlanner(vehicle, scenario.planner, scenario.seed)
-        self.controller = Controller(vehicle, scenario.control)
-        self.allocator = ThrustAllocator(vehicle, scenario.allocation)
+        self.controller: ControlLaw = create(scenario.control, vehicle)
+        self.allocator: AllocationMethod = create(scenario.allocation, vehicle)
         self._planner_step = to_nanoseconds(scenario.planner.step_s)
         self._references = Covering()
         self._achieved: Wrench | None = None

@@ -1,7 +1,8 @@
 """Node `controller`: S-surface plus dynamic law for the vehicle, S-surface law for the arm."""
 
-from uvms_control import ControlConfig, Controller
+from uvms_control import ControlConfig, ControlLaw
 from uvms_core import topics
+from uvms_core.plugin import create
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
 from uvms_core.tick_gate import Covering, Same, Tick
@@ -14,7 +15,7 @@ class ControllerNode(UvmsNode):
 
     def __init__(self, **options) -> None:
         super().__init__("controller", **options)
-        self._controller = Controller(self.vehicle, self.config(ControlConfig))
+        self._law: ControlLaw = create(self.config(ControlConfig), self.vehicle)
         inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),
@@ -24,7 +25,7 @@ class ControllerNode(UvmsNode):
         self.connect(inputs, topics.ODOMETRY, self._step)
 
     def _step(self, tick: Tick) -> None:
-        wrench, joints = self._controller.step(
+        wrench, joints = self._law.step(
             tick[topics.ODOMETRY.name],
             tick[topics.JOINT_STATES.name],
             tick[topics.DISTURBANCE.name],

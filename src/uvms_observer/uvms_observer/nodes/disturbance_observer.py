@@ -1,10 +1,11 @@
 """Node `disturbance_observer`: what acts on the vehicle besides its thrusters, eq. (21)."""
 
 from uvms_core import topics
+from uvms_core.plugin import create
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
 from uvms_core.tick_gate import Previous, Same, Tick
-from uvms_observer import DisturbanceObserver, ObserverConfig
+from uvms_observer import ObserverConfig, ObserverLaw
 
 
 class DisturbanceObserverNode(UvmsNode):
@@ -14,7 +15,7 @@ class DisturbanceObserverNode(UvmsNode):
 
     def __init__(self, **options) -> None:
         super().__init__("disturbance_observer", **options)
-        self._observer = DisturbanceObserver(self.vehicle, self.config(ObserverConfig))
+        self._observer: ObserverLaw = create(self.config(ObserverConfig), self.vehicle)
         inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),

@@ -1,11 +1,12 @@
 """Node `navigation`: the extended Kalman filter on the sensors' topics."""
 
 from uvms_core import topics
+from uvms_core.plugin import create
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
 from uvms_core.signals import to_nanoseconds
 from uvms_core.tick_gate import Periodic, Tick
-from uvms_observer import NavigationConfig, NavigationFilter
+from uvms_observer import NavigationConfig, NavigationEstimator
 
 
 class NavigationNode(UvmsNode):
@@ -15,7 +16,7 @@ class NavigationNode(UvmsNode):
 
     def __init__(self, **options) -> None:
         super().__init__("navigation", **options)
-        self._filter = NavigationFilter(self.vehicle, self.config(NavigationConfig))
+        self._filter: NavigationEstimator = create(self.config(NavigationConfig), self.vehicle)
         sensors = self.vehicle.sensors
         inputs = {
             topics.IMU: Periodic(period_of(sensors.imu)),
