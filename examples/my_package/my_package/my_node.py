@@ -7,10 +7,10 @@ and a reference for the same stamp are there, with one wrench and one joint comm
 from typing import Any
 
 import rclpy
-from my_package.my_law import MyLaw
 from rclpy.node import Node
 from rclpy.qos import QoSProfile, ReliabilityPolicy
 
+from my_package.my_law import MyLaw
 from uvms_control import ControlConfig
 from uvms_core import topics
 from uvms_core.messages import from_message, to_message
@@ -33,16 +33,14 @@ class MyController(Node):
         bandwidth = self.declare_parameter("bandwidth", 1.2).value
         vehicle = load_vehicle(file or None)
         self._joint_names = vehicle.joint_names
-        config = ControlConfig(
-            law="my_package.my_law:MyLaw", parameters={"bandwidth": bandwidth}
-        )
+        config = ControlConfig(law="my_package.my_law:MyLaw", parameters={"bandwidth": bandwidth})
         self._law = MyLaw(vehicle, config.resolved())
         self._gate = TickGate(
             {"odometry": Same(), "joint_states": Same(), "reference": Covering()},
             trigger="odometry",
             lockstep=True,
         )
-        self._publishers = {t: self.create_publisher(message_class(t), t.name, QOS) for t in OUTPUTS}
+        self._senders = {t: self.create_publisher(message_class(t), t.name, QOS) for t in OUTPUTS}
         for topic in INPUTS:
             self._subscribe(topic)
 
@@ -58,7 +56,7 @@ class MyController(Node):
         commands = self._law.step(odometry, joints, None, reference)
         for topic, signal in zip(OUTPUTS, commands, strict=True):
             fields = to_message(topic, signal, self._joint_names)
-            self._publishers[topic].publish(to_ros(message_class(topic), fields))
+            self._senders[topic].publish(to_ros(message_class(topic), fields))
 
 
 def main() -> None:

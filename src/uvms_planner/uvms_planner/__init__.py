@@ -3,7 +3,7 @@
 from typing import Any
 
 from uvms_core.moved import moved
-from uvms_planner.choice import Choice
+from uvms_planner.choice import Choice, nearest_on_path
 from uvms_planner.config import (
     FitnessConfig,
     GeneticConfig,
@@ -35,6 +35,7 @@ __all__ = [
     "StepDiagnostics",
     "StepMethod",
     "figure_9",
+    "nearest_on_path",
 ]
 
 _MOVED = {
