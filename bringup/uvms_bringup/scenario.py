@@ -13,6 +13,8 @@ from uvms_bringup.locate import known_scenarios
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
+from uvms_core.errors import UvmsError
+from uvms_core.plugin import PluginConfig
 from uvms_core.signals import Array, JointGoal, PathGoal
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
@@ -126,6 +128,15 @@ class Scenario(Config):
                 " letters, digits, spaces and the signs _ . + -"
             )
         return name
+
+    @field_validator("navigation", "observer", "planner", "control", "allocation")
+    @classmethod
+    def _has_its_part(cls, own: PluginConfig) -> PluginConfig:
+        """Find the part that is chosen, with all its parameters, before anything starts."""
+        try:
+            return own.resolved()
+        except UvmsError as fault:
+            raise ValueError(str(fault)) from fault
 
     @field_validator("navigation")
     @classmethod

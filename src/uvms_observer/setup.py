@@ -34,6 +34,8 @@ setup(
             "navigation = uvms_observer.nodes.navigation:NavigationNode",
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
         ],
+        "uvms.observers": ["momentum_residual = uvms_observer.disturbance:DisturbanceObserver"],
+        "uvms.navigation_filters": ["error_state_ekf = uvms_observer.navigation:NavigationFilter"],
         "uvms.kernels": ["uvms_observer = uvms_observer"],
     },
 )
