@@ -59,9 +59,7 @@ class Loop:
     def tick(self) -> LoopTick:
         """Everything that the graph computes at the plant's present stamp."""
         stamp, sensors, truth = self.plant.stamp, self.plant.sense(), self.plant.truth()
-        odometry = self.navigation.step(
-            stamp, sensors.imu, sensors.dvl, sensors.pressure, sensors.gps
-        )
+        odometry = self.navigation.step(stamp, **sensors.samples)
         began = time.perf_counter()
         plan = self._plan(stamp, odometry, sensors)
         plan_ms = 1e3 * (time.perf_counter() - began)

@@ -1,6 +1,6 @@
 """`uvms simulate`: the closed loop in one process without ROS, logged as the graph's runs are."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from uvms_analysis.log.encode import SignalWriter
 from uvms_bringup.loop import Loop, LoopTick
@@ -9,7 +9,9 @@ from uvms_core import diagnostics, topics
 from uvms_core.description import StateFrames, description_message, static_message
 from uvms_core.diagnostics import Status
 from uvms_core.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
+from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 from uvms_planner import PlannerStep
 
 Progress = Callable[[int, str], None]
@@ -36,7 +38,7 @@ def simulate(
         PlantDiverged: the state is not finite any more.
     """
     loop = Loop(scenario, vehicle)
-    frames = StateFrames(vehicle)
+    frames, sensor_topics = StateFrames(vehicle), in_order_of_publication(vehicle)
     end = to_nanoseconds(scenario.duration_s)
     if log is not None:
         write_description(log, vehicle)
@@ -44,7 +46,7 @@ def simulate(
     while True:
         tick = loop.tick()
         if log is not None:
-            write_tick(log, tick, frames)
+            write_tick(log, tick, frames, sensor_topics)
         observe(tick)
         progress(tick.stamp, "")
         if tick.plan is not None and tick.plan.finished is not None:
@@ -62,7 +64,12 @@ def write_description(log: SignalWriter, vehicle: Vehicle) -> None:
     log.write_plain(topics.TF_STATIC, static_message(vehicle), 0)
 
 
-def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
+def write_tick(
+    log: SignalWriter,
+    tick: LoopTick,
+    frames: StateFrames,
+    sensor_topics: Sequence[tuple[str, Topic]],
+) -> None:
     """Every message that the graph publishes in this tick."""
     sensors, truth = tick.sensors, tick.truth
     log.write(topics.CLOCK, tick.stamp)
@@ -70,13 +77,8 @@ def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
     log.write(topics.TRUE_JOINT_STATES, truth.joints)
     log.write(topics.TRUE_DISTURBANCE, truth.disturbance)
     log.write(topics.JOINT_STATES, sensors.joints)
-    for topic, samples in (
-        (topics.DVL, sensors.dvl),
-        (topics.PRESSURE, sensors.pressure),
-        (topics.GPS, sensors.gps),
-        (topics.IMU, sensors.imu),
-    ):
-        for sample in samples:
+    for name, topic in sensor_topics:
+        for sample in sensors.samples[name]:
             log.write(topic, sample)
     log.write(topics.ODOMETRY, tick.odometry)
     log.write_plain(topics.TF, frames.message(tick.odometry, sensors.joints), tick.stamp)

@@ -33,6 +33,12 @@ setup(
             "navigation = uvms_observer.nodes.navigation:NavigationNode",
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
         ],
+        "uvms.measurements": [
+            "imu = uvms_observer.navigation.measurements.imu:Gyrocompass",
+            "dvl = uvms_observer.navigation.measurements.dvl:DvlVelocity",
+            "pressure = uvms_observer.navigation.measurements.pressure:PressureDepth",
+            "gps = uvms_observer.navigation.measurements.gps:GpsPosition",
+        ],
         "uvms.kernels": ["uvms_observer = uvms_observer"],
     },
 )

@@ -49,14 +49,20 @@ class Conductor(Node):
         write: takes every message, as `Recorder` says.
         watch: called while waiting; raises where the run cannot go on.
         joint_names: in the vehicle's order, for goals that name the joints.
+        recorded: topics of the run, `topics.of(vehicle)`.
     """
 
     def __init__(
-        self, write: Write, watch: Callable[[], None], joint_names: Sequence[str], **options: Any
+        self,
+        write: Write,
+        watch: Callable[[], None],
+        joint_names: Sequence[str],
+        recorded: Sequence[Topic] = topics.ALL,
+        **options: Any,
     ) -> None:
         super().__init__("conductor", **options)
         self._joint_names = joint_names
-        self._recorder = Recorder(self, write)
+        self._recorder = Recorder(self, write, recorded)
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}

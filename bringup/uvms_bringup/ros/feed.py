@@ -33,6 +33,7 @@ from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import RollCall
 from uvms_core.ros.spin import Spinner, start
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
+from uvms_core.vehicle import vehicle_from_yaml
 
 START_PATIENCE_S = 90.0
 TICK_PATIENCE_S = 5.0
@@ -47,13 +48,14 @@ LOOK_S = 0.5
 class Feeder(Node):
     """Publishes a node's recorded inputs and takes its outputs."""
 
-    def __init__(self, run: RunLog, node: str, tick_of: TickOf, log: LogWriter) -> None:
+    def __init__(
+        self, run: RunLog, node: str, wanted: topics.NodeTopics, tick_of: TickOf, log: LogWriter
+    ) -> None:
         super().__init__("feeder", namespace=run.namespace)
         self._tick_of, self._log = tick_of, log
         self._came: dict[int, Counter[str]] = defaultdict(Counter)
         self._awaited: TickRecord | None = None
         self._answered = Future()
-        wanted = topics.NODES[node]
         self._inputs = {
             topic.resolve(run.namespace): self.create_publisher(
                 message_class(topic), topic.name, qos_profile(topic.qos)
@@ -122,12 +124,13 @@ class Feeding:
         )
         period = to_nanoseconds(self.scenario.plant.control_period_s)
         tick_of = TickOf(run, period, to_nanoseconds(self.scenario.planner.step_s))
-        self.ticks = schedule(run, node, tick_of)
+        self.wanted = topics_of(run, node)
+        self.ticks = schedule(run, node, tick_of, self.wanted)
         values = environment(folder / "logs")
         os.environ.update(values)
         start(["uvms"])
         self._processes = NodeProcesses(folder / "logs", values)
-        self._feeder = Feeder(run, node, tick_of, log)
+        self._feeder = Feeder(run, node, self.wanted, tick_of, log)
         self._spinner = Spinner([self._feeder])
         self._processes.start(node, self._command(folder))
 
@@ -234,6 +237,12 @@ class Feeding:
             raise RunError("the planner rejected the goal of the recorded run")
 
 
+def topics_of(run: RunLog, node: str) -> topics.NodeTopics:
+    """What the node reads and writes with the vehicle of the run."""
+    vehicle = vehicle_from_yaml(run.text("vehicle.yaml"), f"log {run.path}: vehicle.yaml")
+    return topics.nodes(vehicle)[node]
+
+
 def _action_of(goal: PathGoal | JointGoal) -> topics.Action:
     return next(action for action in topics.ACTIONS if isinstance(goal, action.goal))
 
@@ -259,7 +268,7 @@ def feed(run: RunLog, node: str, rate: float, folder: Path) -> int:
         finally:
             line.end()
             feeding.close()
-    outputs = [topic for topic in topics.NODES[node].outputs if run.has(topic)]
+    outputs = [topic for topic in feeding.wanted.outputs if run.has(topic)]
     print(table(compare(run, RunLog.open(folder / "replay.mcap"), outputs)))
     print(f"{len(feeding.ticks)} ticks, {unanswered} unanswered; log: {folder / 'replay.mcap'}")
     return 1 if unanswered else 0

@@ -16,7 +16,7 @@ from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_fil
 from uvms_bringup.ros.processes import NodeProcesses, environment, node_command
 from uvms_bringup.ros.recorder import Write
 from uvms_bringup.scenario import Scenario
-from uvms_core import registry
+from uvms_core import registry, topics
 from uvms_core.ros.spin import Spinner, start
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 
@@ -50,7 +50,7 @@ def run_graph(
     nodes = _composed if composed else _separate
     with nodes(parameters, folder, values) as (inside, watch):
         vehicle = scenario.load_vehicle()
-        conductor = Conductor(write, watch, vehicle.joint_names)
+        conductor = Conductor(write, watch, vehicle.joint_names, topics.of(vehicle))
         conductor.broadcast(vehicle, pace.name == "lockstep")
         spinner = Spinner([conductor, *inside])
         try:

@@ -46,7 +46,8 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     Raises:
         SignalError: a field has a wrong type or shape, is not finite or not of unit length.
     """
-    fields, sized = _fields(type(signal))
+    kind: Any = type(signal)
+    fields, sized = _fields(kind)
     if _MARK not in getattr(signal, "__dict__", ()):
         sizes = {letter: len(each) for letter, each in names.items()}
         for field, rule in fields:
@@ -121,9 +122,7 @@ def _check_array(name: str, value: Any, rule: Shape, sizes: dict[str, int], name
         kind = value.dtype if isinstance(value, np.ndarray) else type(value).__name__
         raise SignalError(f"{name} has type {kind}; it must be an array of float64")
     if value.shape != rule.sizes and not _fits(value.shape, rule, sizes):
-        wanted = tuple(sizes.get(size, size) if isinstance(size, str) else size
-                       for size in rule.sizes)  # fmt: skip
-        raise SignalError(f"{name} has shape {value.shape}; it must have {_text(wanted)}")
+        raise _wrong_shape(name, value, rule, sizes, names)
     flat = value.ravel()
     squared = flat.dot(flat)
     if not isfinite(squared):  # one fast test; the slow way only names the value
@@ -147,15 +146,18 @@ def _fits(shape: tuple[int, ...], rule: Shape, sizes: dict[str, int]) -> bool:
 def _check_sizes(name: str, value: Array, rule: Shape, names: Names) -> None:
     sizes = {letter: len(each) for letter, each in names.items()}
     if not _fits(value.shape, rule, sizes):
-        wanted = tuple(sizes.get(size, size) if isinstance(size, str) else size
-                       for size in rule.sizes)  # fmt: skip
-        raise SignalError(f"{name} has shape {value.shape}; it must have {_text(wanted)}")
+        raise _wrong_shape(name, value, rule, sizes, names)
 
 
-def _text(shape: tuple[int | str, ...]) -> str:
-    """A shape as numpy prints it, with the letters of free sizes."""
-    inner = ", ".join(str(size) for size in shape)
-    return f"({inner},)" if len(shape) == 1 else f"({inner})"
+def _wrong_shape(
+    name: str, value: Array, rule: Shape, sizes: dict[str, int], names: Names
+) -> SignalError:
+    wanted = [str(sizes.get(str(size), size)) for size in rule.sizes]
+    shape = f"({', '.join(wanted)}{',' if len(wanted) == 1 else ''})"
+    whose = "".join(f" for {', '.join(names[s])}" for s in rule.sizes if s in names)
+    free = [size for size in rule.sizes if isinstance(size, str) and size not in sizes]
+    least = "".join(f", {size} >= 1" for size in free)
+    return SignalError(f"{name} has shape {value.shape}; it must have {shape}{least}{whose}")
 
 
 def _check_unit(name: str, value: Array, squared: float) -> None:
@@ -171,7 +173,7 @@ def _check_unit(name: str, value: Array, squared: float) -> None:
 def _name_infinite(name: str, value: Array, rule: Shape, names: Names) -> None:
     for where in np.argwhere(~np.isfinite(value)):
         index = ", ".join(
-            names[size][i] if size in names else str(int(i))
+            names[str(size)][i] if size in names else str(int(i))
             for size, i in zip(rule.sizes, where, strict=True)
         )
         raise SignalError(f"{name}[{index}] is {value[tuple(where)]}; it must be finite")

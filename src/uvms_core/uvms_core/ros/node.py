@@ -25,8 +25,6 @@ from uvms_core.vehicle import Vehicle, load_vehicle
 
 C = TypeVar("C", bound=Config)
 DIAGNOSTICS_PERIOD = NANOSECONDS
-NEEDED = frozenset(t for n in topics.NODES.values() for t in n.inputs) - {topics.CLOCK}
-"""Topics that some node of the loop reads: a run cannot start before somebody listens to them."""
 
 
 def qos_profile(qos: Qos) -> QoSProfile:
@@ -69,7 +67,10 @@ class UvmsNode(Node):
         self.seed = common.seed
         self.lockstep = common.pace == "lockstep"
         self.period = to_nanoseconds(common.control_period_s)
-        self._topics = topics.NODES[name]
+        graph = topics.nodes(self.vehicle)
+        self._topics = graph[name]
+        # What some node of the loop reads: a run cannot start before somebody listens to it.
+        self._needed = frozenset(t for n in graph.values() for t in n.inputs) - {topics.CLOCK}
         self._outputs: dict[Topic, Publisher] = {}
         self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
         self._diagnostics = self._sender(topics.DIAGNOSTICS)
@@ -172,13 +173,13 @@ class UvmsNode(Node):
                 lacks.append(_lack("publishes", name, there, found))
         for topic, publisher in self._outputs.items():
             there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()
-            if found < max(there, 1 if topic in NEEDED else 0):
+            if found < max(there, 1 if topic in self._needed else 0):
                 lacks.append(_lack("subscribes to", topic.name, there, found))
         return lacks
 
     def missing_in_graph(self) -> list[str]:
         """Topics of the loop that nobody in the whole graph publishes or reads, in words."""
-        names = sorted(topic.name for topic in NEEDED)
+        names = sorted(topic.name for topic in self._needed)
         return [f"nobody publishes {n!r}" for n in names if not self.count_publishers(n)] + [
             f"nobody subscribes to {n!r}" for n in names if not self.count_subscribers(n)
         ]

@@ -16,7 +16,7 @@ BUILT_IN: tuple[SensorType, ...] = (imu.TYPE, dvl.TYPE, pressure.TYPE, gps.TYPE)
 """The sensors of every vehicle, in the order in which navigation takes samples of one stamp."""
 
 INERTIAL = imu.TYPE
-"""The sensor that carries the estimate from stamp to stamp; its samples start navigation's ticks."""
+"""Carries the estimate from stamp to stamp; its samples start the ticks of navigation."""
 
 _BY_NAME = {each.name: each for each in BUILT_IN}
 

@@ -38,4 +38,6 @@ def from_message(topic: Topic, msg: Any, names: Sequence[str]) -> DvlSample:
     )
 
 
-TYPE = SensorType("dvl", Dvl, DvlSample, "geometry_msgs/msg/TwistWithCovarianceStamped", to_message, from_message)
+TYPE = SensorType(
+    "dvl", Dvl, DvlSample, "geometry_msgs/msg/TwistWithCovarianceStamped", to_message, from_message
+)

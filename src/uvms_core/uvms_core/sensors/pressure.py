@@ -30,4 +30,6 @@ def from_message(topic: Topic, msg: Any, names: Sequence[str]) -> PressureSample
     )
 
 
-TYPE = SensorType("pressure", Pressure, PressureSample, "sensor_msgs/msg/FluidPressure", to_message, from_message)
+TYPE = SensorType(
+    "pressure", Pressure, PressureSample, "sensor_msgs/msg/FluidPressure", to_message, from_message
+)

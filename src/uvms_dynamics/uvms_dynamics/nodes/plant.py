@@ -19,6 +19,7 @@ from uvms_core.signals import (
     to_seconds,
 )
 from uvms_dynamics.simulation import Plant, PlantConfig
+from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
@@ -61,6 +62,7 @@ class PlantNode(UvmsNode):
     def __init__(self, **options) -> None:
         super().__init__("plant", **options)
         self._plant = Plant(self.vehicle, self.config(PlantConfig), self.seed)
+        self._sensor_topics = in_order_of_publication(self.vehicle)
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
         self._commands: dict[str, Any] = {}
@@ -139,13 +141,8 @@ class PlantNode(UvmsNode):
         self.send(topics.TRUE_JOINT_STATES, truth.joints)
         self.send(topics.TRUE_DISTURBANCE, truth.disturbance)
         self.send(topics.JOINT_STATES, sensors.joints)
-        for topic, samples in (
-            (topics.DVL, sensors.dvl),
-            (topics.PRESSURE, sensors.pressure),
-            (topics.GPS, sensors.gps),
-            (topics.IMU, sensors.imu),
-        ):
-            for sample in samples:
+        for name, topic in self._sensor_topics:
+            for sample in sensors.samples[name]:
                 self.send(topic, sample)
         self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
 

@@ -3,6 +3,7 @@
 from uvms_core import topics
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
+from uvms_core.sensors import INERTIAL, sensor_types
 from uvms_core.signals import to_nanoseconds
 from uvms_core.tick_gate import Periodic, Tick
 from uvms_observer import NavigationConfig, NavigationFilter
@@ -16,22 +17,17 @@ class NavigationNode(UvmsNode):
     def __init__(self, **options) -> None:
         super().__init__("navigation", **options)
         self._filter = NavigationFilter(self.vehicle, self.config(NavigationConfig))
-        sensors = self.vehicle.sensors
-        inputs = {
-            topics.IMU: Periodic(period_of(sensors.imu)),
-            topics.DVL: Periodic(period_of(sensors.dvl)),
-            topics.PRESSURE: Periodic(period_of(sensors.pressure)),
-            topics.GPS: Periodic(period_of(sensors.gps)),
-        }
-        self.connect(inputs, topics.IMU, self._step, every=self.period)
+        used = [sensor for sensor in sensor_types(self.vehicle) if sensor.navigation]
+        self._topics_by_sensor = {sensor.name: sensor.topic for sensor in used}
+        sections = self.vehicle.sensors.mounted
+        inputs = {sensor.topic: Periodic(period_of(sections[sensor.name])) for sensor in used}
+        self.connect(inputs, INERTIAL.topic, self._step, every=self.period)
 
     def _step(self, tick: Tick) -> None:
-        sensors = (topics.IMU, topics.DVL, topics.PRESSURE, topics.GPS)
-        good, faults = zip(
-            *(self._filter.screen(tick.stamp, tick[topic.name]) for topic in sensors), strict=True
-        )
-        self.refuse(tick.stamp, [fault for some in faults for fault in some])
-        self.send(topics.ODOMETRY, self._filter.step(tick.stamp, *good))
+        samples = {name: tick[topic.name] for name, topic in self._topics_by_sensor.items()}
+        odometry, faults = self._filter.step_screened(tick.stamp, samples)
+        self.refuse(tick.stamp, faults)
+        self.send(topics.ODOMETRY, odometry)
         self.report_each_second(tick.stamp, **self._filter.status())
 
 
