@@ -130,7 +130,7 @@ def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
     assert np.linalg.norm(state.quaternion) == pytest.approx(1.0, abs=1e-14)
 
 
-def test_gyro_noise_reads_through_the_dvl_lever_arm():
+def test_gyro_noise_enters_by_the_lever_arm_of_the_dvl():
     quiet, noisy = random_state(5), random_state(5)
     measured = dvl.velocity(quiet, LEVER, RATE)[0] + 0.01
     near = dvl.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, OPEN)

@@ -1,4 +1,4 @@
-"""What the filter and the observer refuse, in what words, and that nothing is lost by it."""
+"""What filter and observer refuse, their messages, and that nothing is lost by it."""
 
 from dataclasses import replace
 
@@ -80,7 +80,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("fault", BAD)
-def test_a_bad_sample_is_named_and_the_filter_goes_on_as_if_it_had_not_come(frames, fault):
+def test_a_bad_sample_is_named_and_the_filter_goes_on_without_it(frames, fault):
     kind, spoil, message = BAD[fault]
     navigation, untouched = (NavigationFilter(VEHICLE, NavigationConfig()) for _ in range(2))
     for frame in frames[:-1]:

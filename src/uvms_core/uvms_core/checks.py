@@ -154,7 +154,7 @@ def _wrong_shape(
 ) -> SignalError:
     wanted = [str(sizes.get(str(size), size)) for size in rule.sizes]
     shape = f"({', '.join(wanted)}{',' if len(wanted) == 1 else ''})"
-    whose = "".join(f" for {', '.join(names[s])}" for s in rule.sizes if s in names)
+    whose = "".join(f" for {', '.join(names[str(s)])}" for s in rule.sizes if s in names)
     free = [size for size in rule.sizes if isinstance(size, str) and size not in sizes]
     least = "".join(f", {size} >= 1" for size in free)
     return SignalError(f"{name} has shape {value.shape}; it must have {shape}{least}{whose}")

@@ -6,7 +6,7 @@ from uvms_core.config import Config
 
 
 class ObserverConfig(Config):
-    """What is fed forward, and how quickly accelerations and the external wrench are followed."""
+    """What is fed forward, and bandwidths of accelerations and external wrench."""
 
     external: bool = Field(
         True,

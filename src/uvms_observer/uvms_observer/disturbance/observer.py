@@ -22,11 +22,11 @@ NOT_MOVING = np.zeros(6)
 
 
 class DisturbanceObserver:
-    """Restoring and coupling wrench of the estimated state through the model, and what is left.
+    """Restoring and coupling wrench of the estimated state through the model, and the remainder.
 
     Eq. (21): F_dis = restoring(R, q) + coupling(nu, nu_dot, q, q_dot, q_ddot), a wrench that acts
     ON the vehicle, body frame, about its origin. Accelerations come from tracking filters, the
-    external wrench from a momentum residual. The water is taken to be at rest: what a current does
+    external wrench from a momentum residual. The water is assumed at rest: the effect of a current
     is part of the external wrench.
 
     Args:
@@ -53,7 +53,7 @@ class DisturbanceObserver:
         """The budget at this stamp, and the total that the controller takes off its wrench.
 
         The budget's coupling has the vehicle's own acceleration in it, as eq. (16) and the plant
-        have. The total has not: the controller's M covers it, so that the arm's inertia counts
+        have. The total does not: the controller's M covers it, so that the arm's inertia counts
         once.
 
         Args:

@@ -1,4 +1,4 @@
-"""Parameters of the navigation filter; what the sensors are like is in the vehicle file."""
+"""Parameters of the navigation filter; the sensors' noise is in the vehicle file."""
 
 from pydantic import Field
 

@@ -30,9 +30,9 @@ class NavigationFilter:
     """Error-state extended Kalman filter, eq. (20); derivation in docs/navigation.md.
 
     Inertial readings carry the state from stamp to stamp; every other reading corrects it at its
-    own stamp, at the point where its sensor sits. A silent sensor only lets the covariance grow. A
-    sample that comes late, but within the configured latency, is put where it belongs: the filter
-    goes back to the step before it and takes all samples since again.
+    own stamp, at the point where its sensor is mounted. Without a sensor's samples the covariance
+    grows. A sample that comes late, but within the configured latency, is used at its own stamp:
+    the filter goes back to the step before it and processes all samples since then again.
 
     Args:
         vehicle: sensors with lever arms and noise, water, datum of the map.
@@ -64,7 +64,7 @@ class NavigationFilter:
         gps: Sequence[GpsSample] = (),
         **further: Sequence[Any],
     ) -> Odometry:
-        """Take the samples since the last step, by their stamps; returns the estimate at `stamp`.
+        """Use the samples since the last step, by their stamps; returns the estimate at `stamp`.
 
         Args:
             stamp: ns.

@@ -15,7 +15,7 @@ from uvms_dynamics.simulation.sensors.mounting import QUATERNION, VELOCITY, Traj
 
 
 class GpsSensor(SensorModel):
-    """Latitude, longitude and altitude of the antenna; no fix while it is under water."""
+    """Latitude, longitude and altitude of the antenna; no fix under water."""
 
     type = gps.TYPE
 

@@ -57,7 +57,7 @@ def correct_velocity(
     rate_variance: float,
     gate: float,
 ) -> float:
-    """DVL: velocity (3,) m/s in body axes; the noise of the gyro reads through the lever arm."""
+    """DVL: velocity (3,) m/s in body axes; the gyro's noise enters by the lever arm."""
     expected, H = velocity(state, lever, rate)
     arm = skew(lever)
     N = variance * np.eye(3) + rate_variance * (arm @ np.ascontiguousarray(arm.T))
