@@ -21,6 +21,7 @@ from uvms_core.signals import (
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import Plant, PlantTruth, SensorFrame
 from uvms_dynamics.simulation.publication import plant_outputs
+from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 from uvms_observer.parts import NavigationPart, ObserverPart
 from uvms_planner import MotionPlanner, PlannerStep
 from uvms_planner.part import PlannerPart
@@ -96,6 +97,7 @@ class Loop:
         self.plant = Plant(vehicle, scenario.plant, scenario.seed)
         self.parts = make_parts(scenario, vehicle)
         self._process = InProcess(self.parts)
+        self._sensor_topics = in_order_of_publication(vehicle)
 
     @property
     def planner(self) -> MotionPlanner:
@@ -105,7 +107,7 @@ class Loop:
     def tick(self) -> LoopTick:
         """Everything that the graph computes at the plant's present stamp."""
         stamp, sensors, truth = self.plant.stamp, self.plant.sense(), self.plant.truth()
-        outputs = list(plant_outputs(stamp, sensors, truth))
+        outputs = list(plant_outputs(stamp, sensors, truth, self._sensor_topics))
         for topic, signal in outputs[1:]:  # the clock is a stamp, not a signal
             self._process.deliver(topic, signal)
         step_ms: dict[str, float] = {}

@@ -4,7 +4,7 @@ import math
 import sys
 import time
 import uuid
-from collections.abc import Callable, Collection, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from rclpy.action import ActionClient
@@ -23,7 +23,7 @@ from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
 from uvms_core.signals import JointGoal, PathGoal, to_seconds
-from uvms_core.topics import Topic
+from uvms_core.topic import NodeTopics, Topic
 from uvms_core.vehicle import Vehicle
 
 START_PATIENCE_S = 180.0
@@ -52,6 +52,8 @@ class Conductor(Node):
         write: takes every message, as `Recorder` says.
         watch: called while waiting; raises if the run cannot continue.
         joint_names: in the vehicle's order, for goals that name the joints.
+        recorded: topics of the run, `topics.of(vehicle)`.
+        graph: what each node reads and writes, `topics.nodes(vehicle)`.
         foreign: roles that are filled by nodes which do not answer to the roll call.
         patient: wait for them without end, because a person starts them.
     """
@@ -61,14 +63,16 @@ class Conductor(Node):
         write: Write,
         watch: Callable[[], None],
         joint_names: Sequence[str],
+        recorded: Sequence[Topic] = topics.ALL,
+        graph: Mapping[str, NodeTopics] = topics.NODES,
         foreign: Collection[str] = (),
         patient: bool = False,
         **options: Any,
     ) -> None:
         super().__init__("conductor", **options)
-        self._foreign, self._patient = foreign, patient
+        self._graph, self._foreign, self._patient = graph, foreign, patient
         self._joint_names = joint_names
-        self._recorder = Recorder(self, write)
+        self._recorder = Recorder(self, write, recorded)
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}
@@ -82,7 +86,7 @@ class Conductor(Node):
             self._take_status,
             qos_profile(topics.DIAGNOSTICS.qos),
         )
-        self._roll_call = RollCall(self, topics.NODES, foreign)
+        self._roll_call = RollCall(self, graph, foreign, graph=graph)
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
 
@@ -145,7 +149,7 @@ class Conductor(Node):
         newest = self._recorder.newest
         return [
             node
-            for node, own in topics.NODES.items()
+            for node, own in self._graph.items()
             if all(topic.name not in newest for topic in own.outputs)
         ]
 

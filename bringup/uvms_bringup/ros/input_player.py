@@ -19,13 +19,14 @@ from uvms_core.ros.roll_call import RollCall
 class InputPlayer(Node):
     """Publishes a node's recorded inputs and takes its outputs."""
 
-    def __init__(self, run: RunLog, node: str, tick_of: TickOf, log: LogWriter) -> None:
+    def __init__(
+        self, run: RunLog, node: str, own: topics.NodeTopics, tick_of: TickOf, log: LogWriter
+    ) -> None:
         super().__init__("input_player", namespace=run.namespace)
         self._tick_of, self._log = tick_of, log
         self._arrived: dict[int, Counter[str]] = defaultdict(Counter)
         self._pending: TickRecord | None = None
         self._answered = Future()
-        own = topics.NODES[node]
         self._inputs = {
             topic.resolve(run.namespace): self.create_publisher(
                 message_class(topic), topic.name, qos_profile(topic.qos)

@@ -51,12 +51,13 @@ class NodeReplay:
         self._vehicle = Analysis(run).vehicle
         period = to_nanoseconds(self.scenario.plant.control_period_s)
         tick_of = TickOf(run, period, to_nanoseconds(self.scenario.planner.step_s))
-        self.ticks = schedule(run, node, tick_of)
+        self.topics = topics.nodes(self._vehicle)[node]
+        self.ticks = schedule(run, node, tick_of, self.topics)
         values = environment(folder / "logs")
         os.environ.update(values)
         start(["uvms"])
         self._processes = NodeProcesses(folder / "logs", values)
-        self._player = InputPlayer(run, node, tick_of, log)
+        self._player = InputPlayer(run, node, self.topics, tick_of, log)
         self._spinner = Spinner([self._player])
         self._processes.start(node, self._command(folder))
 
@@ -188,7 +189,7 @@ def replay_into(run: RunLog, node: str, rate: float, folder: Path) -> int:
         finally:
             line.end()
             replay.close()
-    outputs = [topic for topic in topics.NODES[node].outputs if run.has(topic)]
+    outputs = [topic for topic in replay.topics.outputs if run.has(topic)]
     print(table(compare(run, RunLog.open(folder / "replay.mcap"), outputs)))
     print(f"{len(replay.ticks)} ticks, {unanswered} unanswered; log: {folder / 'replay.mcap'}")
     return 1 if unanswered else 0

@@ -58,7 +58,7 @@ def run_graph(
     values = environment(folder / "logs")
     os.environ.update(values)
     print(f"ROS_DOMAIN_ID={values['ROS_DOMAIN_ID']} (set it to listen in)", flush=True)
-    _print_contracts(cast)
+    _print_contracts(cast, vehicle)
     start(["uvms"])
     nodes = _composed if composed else _separate
     with nodes({role: parameters[role] for role in cast.started}, cast, folder, values) as group:
@@ -67,6 +67,8 @@ def run_graph(
             write,
             watch,
             vehicle.joint_names,
+            topics.of(vehicle),
+            topics.nodes(vehicle),
             foreign,
             patient=bool(cast.absent),
             namespace=cast.namespace or None,
@@ -93,9 +95,11 @@ def foreign_roles(cast: Cast) -> frozenset[str]:
     return cast.absent | {r for r, make in chosen.items() if not issubclass(make, UvmsNode)}
 
 
-def _print_contracts(cast: Cast) -> None:
+def _print_contracts(cast: Cast, vehicle: Vehicle) -> None:
     for role in sorted(cast.absent):
-        print(f"{role} is left to you; it\n{topics.contract(role)}", flush=True)
+        print(
+            f"{role} is left to you; it\n{topics.contract(role, topics.nodes(vehicle))}", flush=True
+        )
 
 
 def _follow(

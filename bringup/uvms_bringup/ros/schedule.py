@@ -1,4 +1,4 @@
-"""Inputs and outputs of a node in a recorded run, tick by tick."""
+"""What a node gets and gives in a recorded run, tick by tick."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ Input = tuple[str, bytes]
 
 @dataclass
 class TickRecord:
-    """One tick of a node: recorded inputs (full topic name, bytes), and its number of outputs."""
+    """One tick of a node: recorded inputs (full topic name, bytes), and how many outputs came."""
 
     stamp: int
     inputs: list[Input] = field(default_factory=list)
@@ -21,7 +21,7 @@ class TickRecord:
 
 
 class TickOf:
-    """The tick in which a node publishes an output, from the output's stamp."""
+    """The tick in which a node gives an output, from the output's stamp."""
 
     def __init__(self, run: RunLog, period: int, planner_step: int) -> None:
         self._period, self._step = period, planner_step
@@ -36,15 +36,18 @@ class TickOf:
         return -(-stamp // self._period) * self._period
 
 
-def schedule(run: RunLog, node: str, tick_of: TickOf) -> list[TickRecord]:
-    """The ticks of a node, in order: those in which it published something in the recorded run.
+def schedule(
+    run: RunLog, node: str, tick_of: TickOf, wanted: topics.NodeTopics | None = None
+) -> list[TickRecord]:
+    """The ticks of a node, in order: those in which it gave something in the recorded run.
 
-    Inputs belong to the first tick at or after their stamp.
+    Inputs belong to the first tick at or after their stamp. `wanted` are the node's topics with the
+    vehicle of the run; None: those with the built-in sensors.
 
     Raises:
         LogError: the log lacks one of the node's inputs, or all of its outputs.
     """
-    wanted = topics.NODES[node]
+    wanted = wanted or topics.NODES[node]
     inputs = [run.full_name(topic) for topic in wanted.inputs]
     outputs = [run.full_name(topic) for topic in wanted.outputs]
     lacking = [name for name in inputs if name not in run.topics]

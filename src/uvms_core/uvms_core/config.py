@@ -20,6 +20,11 @@ class Config(BaseModel):
         extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
     )
 
+    @classmethod
+    def field_model(cls, name: str) -> type[BaseModel] | None:
+        """The model that a field of this name holds, alone or in a sequence; None for others."""
+        return _inner_model(getattr(cls.model_fields.get(name), "annotation", None))
+
 
 def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
     """One line per fault: the field, the value, and what is allowed."""
@@ -49,8 +54,8 @@ def _explain_one(item, what: str, model: type[BaseModel]) -> str:
 
 def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
     for part in path:
-        field = model.model_fields.get(str(part))
-        model = _inner_model(getattr(field, "annotation", None)) or model
+        inner = model.field_model(str(part)) if issubclass(model, Config) else None
+        model = inner or model
     return sorted(model.model_fields)
 
 

@@ -6,18 +6,14 @@ called with the vehicle (`uvms_core.vehicle.Vehicle`) and its section of the con
 """
 
 from abc import abstractmethod
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any, Protocol
 
 from uvms_core.errors import SignalError
 from uvms_core.signals import (
     DisturbanceBudget,
-    DvlSample,
-    GpsSample,
-    ImuSample,
     JointStates,
     Odometry,
-    PressureSample,
     Wrench,
 )
 
@@ -48,20 +44,14 @@ class NavigationEstimator(Protocol):
     """Estimates the vehicle's motion from the samples of its sensors."""
 
     @abstractmethod
-    def step(
-        self,
-        stamp: int,
-        imu: Sequence[ImuSample],
-        dvl: Sequence[DvlSample],
-        pressure: Sequence[PressureSample],
-        gps: Sequence[GpsSample],
-    ) -> Odometry:
-        """The estimate at `stamp` (ns) from the samples since the last step."""
-        ...
+    def step_screened(
+        self, stamp: int, samples: Mapping[str, Sequence[Any]]
+    ) -> tuple[Odometry, list[SignalError]]:
+        """The estimate at `stamp` (ns) from the samples since the last step, by sensor.
 
-    @abstractmethod
-    def screen(self, stamp: int, samples: Iterable[Any]) -> tuple[list[Any], list[SignalError]]:
-        """The samples that `step` will take, in order, and an error for each that it will not."""
+        Returns:
+            The estimate, and an error for each sample that is left out.
+        """
         ...
 
     @abstractmethod

@@ -1,12 +1,12 @@
 """Navigation filter and disturbance observer as parts of the loop."""
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from uvms_core import topics
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
+from uvms_core.sensors import INERTIAL, sensor_types
 from uvms_core.signals import to_nanoseconds
 from uvms_core.tick_gate import Periodic, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
@@ -25,34 +25,29 @@ class NavigationPart(Part):
         period: of the control loop, ns.
     """
 
-    trigger = topics.IMU
+    trigger = INERTIAL.topic
     outputs = topics.NODES["navigation"].outputs
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig, period: int) -> None:
         self.filter: NavigationEstimator = create(config, vehicle)
         self.every = period
-        sensors = vehicle.sensors
+        used = [sensor for sensor in sensor_types(vehicle) if sensor.navigation]
+        sections = vehicle.sensors.mounted
+        self._sensors = {sensor.name: sensor.topic.name for sensor in used}
         self.inputs = {
-            topics.IMU: Periodic(sample_period(sensors.imu)),
-            topics.DVL: Periodic(sample_period(sensors.dvl)),
-            topics.PRESSURE: Periodic(sample_period(sensors.pressure)),
-            topics.GPS: Periodic(sample_period(sensors.gps)),
+            sensor.topic: Periodic(sample_period(sections[sensor.name])) for sensor in used
         }
-        self._faults: list[UvmsError] = []
+        self._faults: Sequence[UvmsError] = ()
 
     def step(self, tick: Tick) -> Iterator[Output]:
-        """Screen the samples, then one step of the filter."""
-        good: list[Any] = []
-        self._faults = []
-        for topic in self.inputs:
-            samples, faults = self.filter.screen(tick.stamp, tick[topic.name])
-            good.append(samples)
-            self._faults += faults
-        yield topics.ODOMETRY, self.filter.step(tick.stamp, *good)
+        """One step of the filter; samples that it refuses are left out."""
+        samples = {name: tick[topic] for name, topic in self._sensors.items()}
+        odometry, self._faults = self.filter.step_screened(tick.stamp, samples)
+        yield topics.ODOMETRY, odometry
 
     def take_faults(self) -> Sequence[UvmsError]:
         """Samples that the last step left out."""
-        faults, self._faults = self._faults, []
+        faults, self._faults = self._faults, ()
         return faults
 
     def status(self) -> dict[str, int | float]:

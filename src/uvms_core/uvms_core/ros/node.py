@@ -27,8 +27,6 @@ from uvms_core.vehicle import Vehicle, load_vehicle
 
 C = TypeVar("C", bound=Config)
 DIAGNOSTICS_PERIOD = NANOSECONDS
-NEEDED = frozenset(t for n in topics.NODES.values() for t in n.inputs) - {topics.CLOCK}
-"""Topics that some node of the loop reads: a run cannot start before they have a subscriber."""
 
 
 def qos_profile(qos: Qos) -> QoSProfile:
@@ -77,7 +75,10 @@ class UvmsNode(Node):
         self.seed = common.seed
         self.lockstep = common.pace == "lockstep"
         self.period = to_nanoseconds(common.control_period_s)
-        self._topics = topics.NODES[name]
+        self.graph = topics.nodes(self.vehicle)
+        self._topics = self.graph[name]
+        # What some node of the loop reads: a run cannot start before it has a subscriber.
+        self._needed = {t for n in self.graph.values() for t in n.inputs} - {topics.CLOCK}
         self._outputs: dict[Topic, Publisher] = {}
         self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
         self._diagnostics = self._sender(topics.DIAGNOSTICS)
@@ -180,7 +181,7 @@ class UvmsNode(Node):
                 lacks.append(_lack(nobody_publishes(topic), there, found))
         for topic, publisher in self._outputs.items():
             there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()
-            if found < max(there, 1 if topic in NEEDED else 0):
+            if found < max(there, 1 if topic in self._needed else 0):
                 lacks.append(_lack(nobody_reads(topic), there, found))
         return lacks
 

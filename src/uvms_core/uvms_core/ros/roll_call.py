@@ -4,14 +4,14 @@ A role of the graph is filled by one of our nodes, which answers its service `re
 else's node, which only has to publish what the others read of that role.
 """
 
-from collections.abc import Collection, Iterable
+from collections.abc import Collection, Iterable, Mapping
 
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from uvms_core import topics
 from uvms_core.ros.request import ASK_AGAIN_S, Request
-from uvms_core.topics import Topic
+from uvms_core.topic import NodeTopics, Topic
 
 NOT_UP = "has not come up"
 NO_ANSWER = "is up but does not answer"
@@ -27,6 +27,7 @@ class RollCall:
         roles: that are asked for.
         foreign: roles that somebody else's node fills; None: those that have no service `ready`.
         again_s: wall time after which a node that does not answer is asked again, s.
+        graph: what each node reads and writes, `topics.nodes(vehicle)`.
     """
 
     def __init__(
@@ -35,8 +36,9 @@ class RollCall:
         roles: Iterable[str],
         foreign: Collection[str] | None = (),
         again_s: float = ASK_AGAIN_S,
+        graph: Mapping[str, NodeTopics] = topics.NODES,
     ) -> None:
-        self._node, self._foreign, self._again_s = node, foreign, again_s
+        self._node, self._foreign, self._again_s, self._graph = node, foreign, again_s, graph
         self._clients = {role: node.create_client(Trigger, f"{role}/ready") for role in roles}
         self._requests = {role: self._request(role) for role in self._clients}
         self._answers: dict[str, list[str]] = {role: [NOT_UP] for role in self._clients}
@@ -59,12 +61,13 @@ class RollCall:
         if role in foreign:
             return [
                 nobody_publishes(topic)
-                for topic in topics.NODES[role].outputs
-                if topics.readers(topic) - foreign and not self._node.count_publishers(topic.name)
+                for topic in self._graph[role].outputs
+                if topics.readers(topic, self._graph) - foreign
+                and not self._node.count_publishers(topic.name)
             ]
         if self._answers[role]:
             self._answers[role] = self._ask(role)
-        idle = unread(foreign)
+        idle = unread(foreign, self._graph)
         return [lack for lack in self._answers[role] if lack not in idle]
 
     def _ask(self, role: str) -> list[str]:
@@ -92,7 +95,7 @@ def nobody_reads(topic: Topic) -> str:
     return f"nobody subscribes to {topic.name!r} ({topic.type})"
 
 
-def unread(foreign: set[str]) -> set[str]:
+def unread(foreign: set[str], graph: Mapping[str, NodeTopics]) -> set[str]:
     """Lacks that do not count: only nodes of somebody else's could read these topics."""
-    idle = (t for t in topics.ALL if topics.readers(t) and topics.readers(t) <= foreign)
-    return {nobody_reads(topic) for topic in idle}
+    read = {topic for own in graph.values() for topic in own.inputs}
+    return {nobody_reads(topic) for topic in read if topics.readers(topic, graph) <= foreign}

@@ -20,6 +20,7 @@ from uvms_core.signals import (
 )
 from uvms_dynamics.simulation import Plant, PlantConfig
 from uvms_dynamics.simulation.publication import plant_outputs
+from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
@@ -74,8 +75,9 @@ class PlantNode(UvmsNode):
         self._deadline: float | None = time.monotonic() + POLL
         self._timeouts = 0
         self._complete_since: float | None = None
-        others = [name for name in topics.NODES if name != self.role]
-        self._roll_call = RollCall(self, others, foreign=None)
+        others = [name for name in self.graph if name != self.role]
+        self._roll_call = RollCall(self, others, foreign=None, graph=self.graph)
+        self._sensor_topics = in_order_of_publication(self.vehicle)
         self._notice = time.monotonic() + NOTICE
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
             self.listen(topic, partial(self._take, topic.name))
@@ -108,7 +110,7 @@ class PlantNode(UvmsNode):
 
     def _all_there(self) -> bool:
         lacks = self._roll_call.poll()
-        idle = unread(self._roll_call.foreign)
+        idle = unread(self._roll_call.foreign, self.graph)
         if own := [lack for lack in self.missing_peers() if lack not in idle]:
             lacks[self.role] = SEPARATOR.join(own)
         if lacks and time.monotonic() > self._notice:
@@ -145,7 +147,7 @@ class PlantNode(UvmsNode):
 
     def _publish_tick(self) -> None:
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
-        for topic, signal in plant_outputs(stamp, sensors, truth):
+        for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
             self.send(topic, signal)
         self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
 

@@ -10,7 +10,7 @@ from uvms_observer.interfaces import ObserverLaw
 
 
 class ObserverConfig(PluginConfig):
-    """What is fed forward, and how quickly accelerations and the external wrench are followed."""
+    """What is fed forward, and bandwidths of accelerations and external wrench."""
 
     slot: ClassVar[Slot] = Slot(registry.OBSERVERS, "law", ObserverLaw)
 

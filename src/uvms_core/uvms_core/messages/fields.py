@@ -1,8 +1,8 @@
-"""Readers of message fields that check once, at the boundary, and name what is wrong.
+"""Readers of message fields that check what they read, and name what is wrong.
 
 They read attributes of any message-like object (an rclpy message, a decoded log message) and raise
-`SignalError` that names topic, field and value. The sum of finite numbers is finite but for
-overflow, so one test of the sum is the fast way, and the slow way only names the culprit.
+`SignalError` that names topic, field and value. The sum of finite numbers is finite except for
+overflow, so one test of the sum is the fast way, and the slow way only names the value.
 """
 
 from collections.abc import Iterable, Sequence
@@ -11,12 +11,10 @@ from typing import Any
 
 import numpy as np
 
+from uvms_core.checks import is_unit
 from uvms_core.errors import SignalError
 from uvms_core.signals import NANOSECONDS, Array, to_seconds
-from uvms_core.topics import Action, Topic
-
-QUATERNION_TOLERANCE = 1e-3
-"""A quaternion from outside may be off unit length by this much; a zero one is rubbish."""
+from uvms_core.topic import Action, Topic
 
 
 def stamp_of(time: Any) -> int:
@@ -88,7 +86,7 @@ def quaternion(topic: Topic | Action, path: str, value: Any) -> Array:
     """A Quaternion as an array (4,), finite and of unit length."""
     x, y, z, w = value.x, value.y, value.z, value.w
     squared = x * x + y * y + z * z + w * w
-    if not abs(squared - 1.0) < 2.0 * QUATERNION_TOLERANCE:
+    if not is_unit(squared):
         _refuse(topic.name, [f"{path}.{axis}" for axis in "xyzw"], (x, y, z, w))
         raise SignalError(f"{topic.name}: {path} has length {squared**0.5:g}; it must be 1")
     return np.array((x, y, z, w))

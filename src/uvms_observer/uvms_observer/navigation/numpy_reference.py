@@ -1,4 +1,4 @@
-"""The filter's equations with full matrices in plain numpy: the oracle of its kernels.
+"""The filter's equations with full matrices in plain numpy, to compare its kernels with.
 
 Slow and plain: every function returns new values and reads like the formulas in docs/navigation.md.
 """
