@@ -10,8 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
 from uvms_analysis.log.writer import LogWriter
@@ -24,6 +22,7 @@ from uvms_bringup.simulate import simulate
 from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
+from uvms_core.yaml_text import dump_yaml
 
 Goal = PathGoal | JointGoal | None
 Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
@@ -90,7 +89,7 @@ class Session:
         return self._record(run)
 
     def _record(self, run: Run) -> dict[str, Any]:
-        config = yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
+        config = dump_yaml(self.scenario.model_dump(mode="json"))
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
         line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
