@@ -10,6 +10,7 @@ from typing import Any
 
 from uvms_analysis.trials.commands import add_commands as add_trial_commands
 from uvms_bringup import added_mass
+from uvms_bringup.cast import Cast
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.session import Session, prepare
@@ -95,6 +96,22 @@ def _add_run(commands: Any, name: str, action: Any, text: str) -> None:
         "(vehicle.hull.mass_kg=190); may be repeated",
     )
     add("--output", metavar="DIR", help="folder of the run (default: runs/SCENARIO-TIME)")
+    add("--namespace", default="", metavar="NAME", help="ROS namespace of all topics and nodes")
+    add(
+        "--node",
+        action="append",
+        default=[],
+        metavar="ROLE=NODE",
+        help=f"your node in the place of ours, as controller=my_package.my_node:MyController;"
+        f" ROLE is one of {', '.join(topics.NODES)}",
+    )
+    add(
+        "--without",
+        action="append",
+        default=[],
+        metavar="ROLE",
+        help="do not start this node: you start it, and the run waits for it",
+    )
 
 
 def _add_replay(commands: Any) -> None:
@@ -135,7 +152,8 @@ def _session(options: argparse.Namespace, pace: Pace) -> Session:
         duration_s=options.duration,
         vehicle=options.vehicle,
     )
-    session = prepare(scenario, options.output, str(pace), options.command)
+    cast = Cast.parse(options.node, options.without, options.namespace)
+    session = prepare(scenario, options.output, str(pace), options.command, cast)
     print(f"{scenario.scenario}: {scenario.description}\nto {session.folder}", flush=True)
     return session
 

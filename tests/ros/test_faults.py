@@ -8,6 +8,7 @@ from in_process import Peer, graph_of, parameters, spin_until
 from uvms_control.nodes.thrust_allocator import ThrustAllocatorNode
 from uvms_core import diagnostics, topics
 from uvms_core.errors import ConfigError
+from uvms_core.ros.roll_call import nobody_reads
 from uvms_core.signals import ThrusterCommand, Wrench
 from uvms_core.vehicle import load_vehicle
 from uvms_dynamics.nodes.plant import PlantNode
@@ -64,9 +65,7 @@ def test_a_node_that_gets_rubbish_reports_it_and_goes_on():
     with graph_of(ThrustAllocatorNode, peer) as (spinner, (node, other)):
         spin_until(spinner, lambda: node.count_publishers("wrench_command") == 1)
         spin_until(spinner, lambda: other.count_publishers("thruster_command") == 1)
-        spin_until(
-            spinner, lambda: node.missing_peers() == ["nobody subscribes to 'wrench_achieved'"]
-        )
+        spin_until(spinner, lambda: node.missing_peers() == [nobody_reads(topics.WRENCH_ACHIEVED)])
         other.say(topics.WRENCH_COMMAND, Wrench(0, np.array([np.nan, 0, 0, 0, 0, 0])))
         errors: list = []
 

@@ -1,9 +1,10 @@
 """The conductor of a run: waits for the nodes, sends the goal, starts time, watches, records."""
 
+import math
 import sys
 import time
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 from typing import Any
 
 from rclpy.action import ActionClient
@@ -30,7 +31,9 @@ START_PATIENCE_S = 180.0
 ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0
 NOTICE_S = 10.0
-"""Wall time of silence after which one is told what is being waited for, again and again."""
+"""Wall time between two lines on what is being waited for."""
+FOREIGN_SETTLE_S = 1.0
+"""Wall time in which nodes that do not answer to the roll call find their listeners."""
 SETTLE_S = 0.3
 """Wall time after the last answers, for what was published beside them, such as a reference."""
 
@@ -49,12 +52,21 @@ class Conductor(Node):
         write: takes every message, as `Recorder` says.
         watch: called while waiting; raises where the run cannot go on.
         joint_names: in the vehicle's order, for goals that name the joints.
+        foreign: roles that are filled by nodes which do not answer to the roll call.
+        patient: wait for them without end, because a person starts them.
     """
 
     def __init__(
-        self, write: Write, watch: Callable[[], None], joint_names: Sequence[str], **options: Any
+        self,
+        write: Write,
+        watch: Callable[[], None],
+        joint_names: Sequence[str],
+        foreign: Collection[str] = (),
+        patient: bool = False,
+        **options: Any,
     ) -> None:
         super().__init__("conductor", **options)
+        self._foreign, self._patient = foreign, patient
         self._joint_names = joint_names
         self._recorder = Recorder(self, write)
         self._watch = watch
@@ -70,7 +82,7 @@ class Conductor(Node):
             self._take_status,
             qos_profile(topics.DIAGNOSTICS.qos),
         )
-        self._roll_call = RollCall(self, topics.NODES)
+        self._roll_call = RollCall(self, topics.NODES, foreign)
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
 
@@ -120,9 +132,14 @@ class Conductor(Node):
         self._await(
             spinner,
             lambda: not self._roll_call.poll(),
-            START_PATIENCE_S,
-            lambda: _told(self._roll_call.poll()),
+            math.inf if self._patient else START_PATIENCE_S,
+            lambda: _missing(self._roll_call.poll()),
         )
+        if self._foreign:  # nobody knows whether these have found their listeners
+            settled = time.monotonic() + FOREIGN_SETTLE_S
+            while time.monotonic() < settled:
+                self._watch()
+                spinner.spin_once(0.05)
 
     def _silent(self) -> list[str]:
         newest = self._recorder.newest
@@ -199,7 +216,7 @@ class Conductor(Node):
             if spinner.done.done():
                 raise RunError("stopped before the run began")
             if time.monotonic() > deadline:
-                raise RunError(f"waited {patience:.0f} s in vain for: {lack()}")
+                raise RunError(f"timed out after {patience:.0f} s waiting for: {lack()}")
             spinner.spin_once(0.05)
 
     def _take_status(self, msg: Any) -> None:
@@ -221,7 +238,7 @@ class Conductor(Node):
         return text
 
 
-def _told(lacks: dict[str, str]) -> str:
-    """Who is waited for; a node that is not up is the reason why the others lack its topics."""
-    dumb = {node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER)}
-    return "; ".join(f"{node}: {lack}" for node, lack in (dumb or lacks).items())
+def _missing(lacks: dict[str, str]) -> str:
+    """Who is missing; a node that is not up is the reason why the others lack its topics."""
+    absent = {node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER)}
+    return "; ".join(f"{node}: {lack}" for node, lack in (absent or lacks).items())

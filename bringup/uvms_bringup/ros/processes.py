@@ -26,7 +26,7 @@ def node_command(
     """
     command = [sys.executable, "-m", "uvms_core.ros.main", node or role]
     command += ["--ros-args", "-r", f"__node:={role}", "--params-file", str(parameter_file)]
-    return command + (["-r", f"__ns:={namespace}"] if namespace else [])
+    return command + (["-r", f"__ns:=/{namespace}"] if namespace else [])
 
 
 class NodeProcesses:

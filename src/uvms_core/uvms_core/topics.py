@@ -181,3 +181,17 @@ NODES: dict[str, NodeTopics] = {
         (THRUSTER_COMMAND, WRENCH_ACHIEVED, ALLOCATION),
     ),
 }
+
+
+def readers(topic: Topic) -> set[str]:
+    """Names of the nodes that read a topic."""
+    return {name for name, own in NODES.items() if topic in own.inputs}
+
+
+def contract(name: str) -> str:
+    """What the node of a name reads and writes, as text for whoever writes one."""
+    own = NODES[name]
+    rows = [("reads", own.inputs), ("writes", own.outputs)]
+    return "\n".join(
+        f"  {verb:6} {topic.name} [{topic.type}]" for verb, some in rows for topic in some
+    )

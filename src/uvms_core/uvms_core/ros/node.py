@@ -18,8 +18,10 @@ from uvms_core.errors import PlantDiverged, UvmsError
 from uvms_core.messages import from_message, to_message
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.parameters import declare_config
+from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
 from uvms_core.signals import NANOSECONDS, to_nanoseconds
 from uvms_core.tick_gate import Input, Tick, TickGate
+from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.topics import Qos, Topic
 from uvms_core.vehicle import Vehicle, load_vehicle
 
@@ -40,7 +42,7 @@ def qos_profile(qos: Qos) -> QoSProfile:
 
 
 class NodeConfig(Config):
-    """What every node of the loop is told."""
+    """Parameters that every node of the loop has."""
 
     vehicle_file: str = Field("", description="vehicle file; empty: the reference vehicle")
     seed: int = Field(1, ge=0, description="seed of this run's random numbers")
@@ -49,7 +51,7 @@ class NodeConfig(Config):
         description="lockstep (repeatable: wait for all inputs of a stamp) or realtime (use the "
         "newest); the same for all nodes",
     )
-    control_period_s: float = Field(0.05, gt=0.0, description="period of the control loop, s")
+    control_period_s: ControlPeriod = CONTROL_PERIOD_S
 
 
 class UvmsNode(Node):
@@ -62,7 +64,13 @@ class UvmsNode(Node):
     when an input is refused: the fault is logged, counted and reported on /diagnostics.
     """
 
-    def __init__(self, name: str, **options: Any) -> None:
+    role = ""
+    """Its name in the graph, and its row in the table of topics."""
+    configurations: tuple[type[Config], ...] = ()
+    """Configurations whose fields are its parameters."""
+
+    def __init__(self, **options: Any) -> None:
+        name = self.role
         super().__init__(name, **options)
         common = self.config(NodeConfig)
         self.vehicle: Vehicle = load_vehicle(common.vehicle_file or None)
@@ -77,7 +85,7 @@ class UvmsNode(Node):
         self._reported = -DIAGNOSTICS_PERIOD
         self._refused = 0
         self._gate: TickGate | None = None
-        self._receivers: dict[str, Any] = {}
+        self._receivers: dict[Topic, Any] = {}
         self.create_service(Trigger, f"{name}/ready", self._answer_ready)
 
     def config(self, model: type[C]) -> C:
@@ -109,7 +117,7 @@ class UvmsNode(Node):
         def receive(data: bytes) -> None:
             self.guard(lambda: callback(from_message(topic, wire.decode(data), names)))
 
-        self._receivers[topic.name] = self.create_subscription(
+        self._receivers[topic] = self.create_subscription(
             message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
         )
 
@@ -166,22 +174,15 @@ class UvmsNode(Node):
         sent before that is lost.
         """
         lacks = []
-        for name, subscription in self._receivers.items():
-            there, found = self.count_publishers(name), subscription.get_publisher_count()
+        for topic, subscription in self._receivers.items():
+            there, found = self.count_publishers(topic.name), subscription.get_publisher_count()
             if found < max(there, 1):
-                lacks.append(_lack("publishes", name, there, found))
+                lacks.append(_lack(nobody_publishes(topic), there, found))
         for topic, publisher in self._outputs.items():
             there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()
             if found < max(there, 1 if topic in NEEDED else 0):
-                lacks.append(_lack("subscribes to", topic.name, there, found))
+                lacks.append(_lack(nobody_reads(topic), there, found))
         return lacks
-
-    def missing_in_graph(self) -> list[str]:
-        """Topics of the loop that nobody in the whole graph publishes or reads, in words."""
-        names = sorted(topic.name for topic in NEEDED)
-        return [f"nobody publishes {n!r}" for n in names if not self.count_publishers(n)] + [
-            f"nobody subscribes to {n!r}" for n in names if not self.count_subscribers(n)
-        ]
 
     def _admit(self, topic: Topic, signal: Any) -> None:
         for tick in self._gate.push(topic.name, signal.stamp, signal) if self._gate else ():
@@ -197,11 +198,12 @@ class UvmsNode(Node):
 
     def _answer_ready(self, _: Any, response: Any) -> Any:
         lacks = self.missing_peers()
-        response.success, response.message = not lacks, "; ".join(lacks)
+        response.success, response.message = not lacks, SEPARATOR.join(lacks)
         return response
 
 
-def _lack(does: str, topic: str, there: int, found: int) -> str:
+def _lack(nobody: str, there: int, found: int) -> str:
+    """Nobody is there, or some are there that have not been found yet."""
     if not there:
-        return f"nobody {does} {topic!r}"
-    return f"{there - found} of {there} that {does} {topic!r} not found yet"
+        return nobody
+    return f"{nobody.removeprefix('nobody ')}: {there - found} of {there} not found yet"

@@ -1,36 +1,32 @@
-"""`uvms replay --into NODE`: one real node fed with its recorded inputs, tick by tick."""
+"""`uvms replay --into NODE`: one real node gets its recorded inputs, tick by tick."""
 
 import os
 import time
-from collections import Counter, defaultdict
 from pathlib import Path
 from typing import Any
 
 from rclpy.action import ActionClient
-from rclpy.node import Node
 from rclpy.task import Future
 from std_srvs.srv import Trigger
 
+from uvms_analysis.analysis import Analysis
 from uvms_analysis.log.compare import compare, table
 from uvms_analysis.log.read import RUN, RunLog
-from uvms_analysis.log.schema import qos_yaml
 from uvms_analysis.log.writer import LogWriter
 from uvms_bringup.errors import RunError, ScenarioError
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
+from uvms_bringup.ros.input_player import InputPlayer
+from uvms_bringup.ros.metronome import Metronome
 from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
 from uvms_bringup.ros.processes import NodeProcesses, environment, node_command
-from uvms_bringup.ros.recorder import stamp_of
-from uvms_bringup.ros.replay import Metronome
 from uvms_bringup.ros.schedule import TickOf, TickRecord, schedule
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
 from uvms_core.config import validated
 from uvms_core.messages import to_message
-from uvms_core.ros.convert import action_class, message_class, to_ros
-from uvms_core.ros.node import qos_profile
+from uvms_core.ros.convert import action_class, to_ros
 from uvms_core.ros.request import Request
-from uvms_core.ros.roll_call import RollCall
 from uvms_core.ros.spin import Spinner, start
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 
@@ -44,82 +40,15 @@ UNANSWERED = 3
 LOOK_S = 0.5
 
 
-class Feeder(Node):
-    """Publishes a node's recorded inputs and takes its outputs."""
-
-    def __init__(self, run: RunLog, node: str, tick_of: TickOf, log: LogWriter) -> None:
-        super().__init__("feeder", namespace=run.namespace)
-        self._tick_of, self._log = tick_of, log
-        self._came: dict[int, Counter[str]] = defaultdict(Counter)
-        self._awaited: TickRecord | None = None
-        self._answered = Future()
-        wanted = topics.NODES[node]
-        self._inputs = {
-            topic.resolve(run.namespace): self.create_publisher(
-                message_class(topic), topic.name, qos_profile(topic.qos)
-            )
-            for topic in wanted.inputs
-        }
-        self._outputs = [self._listen(run, topic) for topic in wanted.outputs]
-        self._roll_call = RollCall(self, (node,))
-        self.lack = ""
-
-    def _listen(self, run: RunLog, topic: topics.Topic):
-        name, qos = topic.resolve(run.namespace), qos_yaml(topic.qos)
-
-        def take(data: bytes) -> None:
-            stamp = stamp_of(data)
-            self._log.write(name, topic.type, qos, stamp, data)
-            self._came[self._tick_of(name, stamp)][name] += 1
-            self._look()
-
-        return self.create_subscription(
-            message_class(topic), topic.name, take, qos_profile(topic.qos), raw=True
-        )
-
-    def connected(self) -> bool:
-        """Whether the node and this one have found each other in both directions."""
-        self.lack = "; ".join(self._roll_call.poll().values())
-        return not self.lack and self._matched()
-
-    def _matched(self) -> bool:
-        self.lack = "topics are not yet connected"
-        heard = all(
-            publisher.get_subscription_count()
-            for name, publisher in self._inputs.items()
-            if name != topics.CLOCK.name  # which a node hears only if it uses simulation time
-        )
-        return heard and all(one.get_publisher_count() for one in self._outputs)
-
-    def feed(self, tick: TickRecord) -> None:
-        """Publish the inputs of a tick."""
-        for name, data in tick.inputs:
-            self._inputs[name].publish(data)
-
-    def answer_to(self, tick: TickRecord) -> Future:
-        """Done when all outputs that the tick had in the recorded run have come."""
-        self._awaited, self._answered = tick, Future()
-        self._look()
-        return self._answered
-
-    def _look(self) -> None:
-        tick = self._awaited
-        if tick is not None and self._came[tick.stamp] >= tick.outputs:
-            self._awaited = None
-            self._came = defaultdict(
-                Counter, {stamp: n for stamp, n in self._came.items() if stamp > tick.stamp}
-            )
-            self._answered.set_result(True)
-
-
-class Feeding:
-    """One node in a process of its own, and the feeder beside it."""
+class NodeReplay:
+    """One node in a process of its own, and the player of its inputs beside it."""
 
     def __init__(self, run: RunLog, node: str, folder: Path, log: LogWriter) -> None:
         self.run, self.node = run, node
         self.scenario = validated(
             Scenario, run.configuration(), f"log {run.path}: config.yaml", ScenarioError
         )
+        self._vehicle = Analysis(run).vehicle
         period = to_nanoseconds(self.scenario.plant.control_period_s)
         tick_of = TickOf(run, period, to_nanoseconds(self.scenario.planner.step_s))
         self.ticks = schedule(run, node, tick_of)
@@ -127,8 +56,8 @@ class Feeding:
         os.environ.update(values)
         start(["uvms"])
         self._processes = NodeProcesses(folder / "logs", values)
-        self._feeder = Feeder(run, node, tick_of, log)
-        self._spinner = Spinner([self._feeder])
+        self._player = InputPlayer(run, node, tick_of, log)
+        self._spinner = Spinner([self._player])
         self._processes.start(node, self._command(folder))
 
     def _command(self, folder: Path) -> list[str]:
@@ -138,7 +67,7 @@ class Feeding:
         if self.node == "plant":
             parameters["start_paused"] = False
         file = write_parameter_file(folder / f"{self.node}.yaml", self.node, parameters)
-        return node_command(self.node, file, f"/{self.run.namespace}" if self.run.namespace else "")
+        return node_command(self.node, file, self.run.namespace)
 
     def close(self) -> None:
         """End the node."""
@@ -146,30 +75,30 @@ class Feeding:
         self._spinner.shutdown()
 
     def connect(self) -> None:
-        """Wait until node and feeder have found each other."""
+        """Wait until the node and the player have found each other."""
         deadline = time.monotonic() + START_PATIENCE_S
-        while not self._feeder.connected():
+        while not self._player.connected():
             self._check()
             if time.monotonic() > deadline:
                 raise RunError(
-                    f"waited {START_PATIENCE_S:.0f} s in vain: {self.node}: {self._feeder.lack}"
+                    f"timed out after {START_PATIENCE_S:.0f} s: {self.node}: {self._player.lack}"
                 )
             self._spinner.spin_for(Future(), 0.02)
         if self.node == "plant":
             self._start_plant()
 
     def _start_plant(self) -> None:
-        client = self._feeder.create_client(Trigger, "start")
+        client = self._player.create_client(Trigger, "start")
         request = Request(lambda: client.call_async(Trigger.Request()), client.service_is_ready)
         deadline = time.monotonic() + START_PATIENCE_S
         while request.answer() is None:
             self._check()
             if time.monotonic() > deadline:
-                raise RunError(f"waited {START_PATIENCE_S:.0f} s in vain: the plant did not start")
+                raise RunError(f"timed out after {START_PATIENCE_S:.0f} s: the plant did not start")
             self._spinner.spin_for(Future(), 0.02)
 
     def all_ticks(self, metronome: Metronome, line: ProgressLine) -> int:
-        """Feed tick by tick; returns how many were left unanswered."""
+        """Play tick by tick; returns how many were left unanswered."""
         unanswered = in_a_row = 0
         for number, tick in enumerate(self.ticks):
             ahead = metronome.ahead(tick.stamp)
@@ -188,11 +117,11 @@ class Feeding:
 
     def _one(self, tick: TickRecord, patience: float) -> bool:
         if self.node == "plant":  # it gives first, and steps on what it gets
-            answered = self._await(self._feeder.answer_to(tick), patience)
-            self._feeder.feed(tick)
+            answered = self._await(self._player.answer_to(tick), patience)
+            self._player.play(tick)
             return answered
-        future = self._feeder.answer_to(tick)
-        self._feeder.feed(tick)
+        future = self._player.answer_to(tick)
+        self._player.play(tick)
         return self._await(future, patience)
 
     def _await(self, future: Future, patience: float) -> bool:
@@ -216,19 +145,19 @@ class Feeding:
 
     def _send_goal(self) -> None:
         """The planner's goal comes after its first tick, as in every run."""
-        goal = self.scenario.goal.build(self.scenario.load_vehicle(), self.scenario.plant)
+        goal = self.scenario.goal.build(self._vehicle, self.scenario.plant)
         if self.node != "motion_planner" or goal is None:
             return
         action = _action_of(goal)
         cls: Any = action_class(action)
-        client = ActionClient(self._feeder, cls, action.name)
+        client = ActionClient(self._player, cls, action.name)
         deadline = time.monotonic() + START_PATIENCE_S
         while not client.server_is_ready():
             self._check()
             if time.monotonic() > deadline:
                 raise RunError(f"nobody serves the action {action.name!r}")
             self._spinner.spin_for(Future(), 0.02)
-        names = self.scenario.load_vehicle().joint_names
+        names = self._vehicle.joint_names
         sent = client.send_goal_async(to_ros(cls.Goal, to_message(action, goal, names)))
         if not self._await(sent, START_PATIENCE_S) or not sent.result().accepted:
             raise RunError("the planner rejected the goal of the recorded run")
@@ -238,8 +167,8 @@ def _action_of(goal: PathGoal | JointGoal) -> topics.Action:
     return next(action for action in topics.ACTIONS if isinstance(goal, action.goal))
 
 
-def feed(run: RunLog, node: str, rate: float, folder: Path) -> int:
-    """Feed one node, record its outputs to `folder`/replay.mcap and print how they compare.
+def replay_into(run: RunLog, node: str, rate: float, folder: Path) -> int:
+    """Replay into one node, record its outputs to `folder`/replay.mcap and print how they compare.
 
     Returns 0, or 1 if ticks were left unanswered.
 
@@ -251,15 +180,15 @@ def feed(run: RunLog, node: str, rate: float, folder: Path) -> int:
         for name, data in run.attachments.items():
             log.attach(name, data)
         log.metadata(RUN, dict(run.run) | {"replay_of": run.path.name, "replay_into": node})
-        feeding = Feeding(run, node, folder, log)
-        line = ProgressLine(feeding.ticks[-1].stamp)
+        replay = NodeReplay(run, node, folder, log)
+        line = ProgressLine(replay.ticks[-1].stamp)
         try:
-            feeding.connect()
-            unanswered = feeding.all_ticks(Metronome(rate), line)
+            replay.connect()
+            unanswered = replay.all_ticks(Metronome(rate), line)
         finally:
             line.end()
-            feeding.close()
+            replay.close()
     outputs = [topic for topic in topics.NODES[node].outputs if run.has(topic)]
     print(table(compare(run, RunLog.open(folder / "replay.mcap"), outputs)))
-    print(f"{len(feeding.ticks)} ticks, {unanswered} unanswered; log: {folder / 'replay.mcap'}")
+    print(f"{len(replay.ticks)} ticks, {unanswered} unanswered; log: {folder / 'replay.mcap'}")
     return 1 if unanswered else 0

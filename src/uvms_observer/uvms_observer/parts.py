@@ -1,0 +1,88 @@
+"""Navigation filter and disturbance observer as parts of the loop."""
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from uvms_core import topics
+from uvms_core.errors import UvmsError
+from uvms_core.part import Output, Part
+from uvms_core.signals import to_nanoseconds
+from uvms_core.tick_gate import Periodic, Previous, Same, Tick
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Sensor
+from uvms_observer.disturbance import DisturbanceObserver, ObserverConfig
+from uvms_observer.navigation import NavigationConfig, NavigationFilter
+
+
+class NavigationPart(Part):
+    """Samples of all sensors in, odometry out, once a control tick.
+
+    Args:
+        vehicle: its sensors.
+        config: of the filter.
+        period: of the control loop, ns.
+    """
+
+    trigger = topics.IMU
+    outputs = topics.NODES["navigation"].outputs
+
+    def __init__(self, vehicle: Vehicle, config: NavigationConfig, period: int) -> None:
+        self.filter = NavigationFilter(vehicle, config)
+        self.every = period
+        sensors = vehicle.sensors
+        self.inputs = {
+            topics.IMU: Periodic(sample_period(sensors.imu)),
+            topics.DVL: Periodic(sample_period(sensors.dvl)),
+            topics.PRESSURE: Periodic(sample_period(sensors.pressure)),
+            topics.GPS: Periodic(sample_period(sensors.gps)),
+        }
+        self._faults: list[UvmsError] = []
+
+    def step(self, tick: Tick) -> Iterator[Output]:
+        """Screen the samples, then one step of the filter."""
+        good: list[Any] = []
+        self._faults = []
+        for topic in self.inputs:
+            samples, faults = self.filter.screen(tick.stamp, tick[topic.name])
+            good.append(samples)
+            self._faults += faults
+        yield topics.ODOMETRY, self.filter.step(tick.stamp, *good)
+
+    def take_faults(self) -> Sequence[UvmsError]:
+        """Samples that the last step left out."""
+        faults, self._faults = self._faults, []
+        return faults
+
+    def status(self) -> dict[str, int | float]:
+        """Counters and uncertainty of the filter."""
+        return self.filter.status()
+
+
+def sample_period(sensor: Sensor) -> int:
+    """Nanoseconds between two samples of a sensor."""
+    return to_nanoseconds(1.0 / sensor.rate_hz)
+
+
+class ObserverPart(Part):
+    """Estimated state and achieved wrench in; disturbance and its budget out, eq. (21)."""
+
+    trigger = topics.ODOMETRY
+    outputs = topics.NODES["disturbance_observer"].outputs
+
+    def __init__(self, vehicle: Vehicle, config: ObserverConfig, period: int) -> None:
+        self.law = DisturbanceObserver(vehicle, config)
+        self.inputs = {
+            topics.ODOMETRY: Same(),
+            topics.JOINT_STATES: Same(),
+            topics.WRENCH_ACHIEVED: Previous(period),
+        }
+
+    def step(self, tick: Tick) -> Iterator[Output]:
+        """One step of the observer."""
+        budget, total = self.law.step(
+            tick[topics.ODOMETRY.name],
+            tick[topics.JOINT_STATES.name],
+            tick[topics.WRENCH_ACHIEVED.name],
+        )
+        yield topics.DISTURBANCE, total
+        yield topics.DISTURBANCE_BUDGET, budget
