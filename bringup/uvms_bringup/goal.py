@@ -81,7 +81,7 @@ class Goal(Config):
             ScenarioError: the joint motion does not fit the vehicle.
             VehicleFileError: there is no vehicle `path_made_for`.
         """
-        own = self.resolved(vehicle, plant)
+        own = self.for_vehicle(vehicle, plant)
         if own.path is not None:
             return own.path.goal(*start_of_end_effector(vehicle, plant))
         if own.joints is not None:
@@ -89,7 +89,7 @@ class Goal(Config):
             return JointGoal(np.array(own.joints.times_s), positions)
         return None
 
-    def resolved(self, vehicle: Vehicle, plant: PlantConfig) -> "Goal":
+    def for_vehicle(self, vehicle: Vehicle, plant: PlantConfig) -> "Goal":
         """The same goal in numbers for this vehicle: no posture names, and the path scaled."""
         if self.path is not None:
             return Goal(path=scaled(self.path, self._scale(vehicle)))

@@ -9,10 +9,12 @@ from pydantic import Field, ValidationInfo, field_validator
 
 from uvms_bringup.errors import ScenarioError
 from uvms_bringup.goal import Goal
-from uvms_bringup.locate import scenario_folder
+from uvms_bringup.locate import known_scenarios
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
+from uvms_core.errors import UvmsError
+from uvms_core.plugin import PluginConfig
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
 from uvms_core.vehicle.postures import STOWED
@@ -72,6 +74,15 @@ class Scenario(Config):
             )
         return name
 
+    @field_validator("navigation", "observer", "planner", "control", "allocation")
+    @classmethod
+    def _has_its_part(cls, own: PluginConfig) -> PluginConfig:
+        """Find the part that is chosen, with all its parameters, before anything starts."""
+        try:
+            return own.resolved()
+        except UvmsError as fault:
+            raise ValueError(str(fault)) from fault
+
     @field_validator("navigation")
     @classmethod
     def _starts_at_the_plant(cls, own: NavigationConfig, info: ValidationInfo) -> NavigationConfig:
@@ -92,17 +103,12 @@ class Scenario(Config):
         check_start(vehicle, self.plant, self.planner)
         return vehicle
 
-    def resolved(self, vehicle: Vehicle) -> "Scenario":
+    def for_vehicle(self, vehicle: Vehicle) -> "Scenario":
         """The same scenario in numbers for this vehicle: no posture names, and the path scaled."""
         angles = initial_joints_deg(vehicle, self.plant)
         start = {"initial_posture": STOWED, "initial_joints_deg": angles}
-        goal = self.goal.resolved(vehicle, self.plant)
+        goal = self.goal.for_vehicle(vehicle, self.plant)
         return self.model_copy(update={"plant": self.plant.model_copy(update=start), "goal": goal})
-
-
-def known_scenarios() -> dict[str, Path]:
-    """Scenarios that come with the project, by name."""
-    return {path.stem: path for path in sorted(scenario_folder().glob("*.yaml"))}
 
 
 def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Scenario:

@@ -168,7 +168,7 @@ def prepare(
         RunError: the folder cannot be made, or it holds another run already.
     """
     vehicle = scenario.load_vehicle()
-    scenario = scenario.resolved(vehicle)
+    scenario = scenario.for_vehicle(vehicle)
     goal = scenario.goal.build(vehicle, scenario.plant)
     folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
     if (folder / "run.mcap").exists():

@@ -47,7 +47,7 @@ def test_the_plant_says_who_is_missing_goes_on_safely_and_marks_the_run():
         spin_until(spinner, lambda: 100_000_000 in other.heard[topics.CLOCK.name])
         warnings = [s for s in other.heard[topics.DIAGNOSTICS.name] if s.level == diagnostics.WARN]
     assert warnings[0].message == (
-        "t = 0.00 s: no joint_command in time; going on with the safe command"
+        "t = 0.00 s: no joint_command in time; continuing with the safe command"
     )
     assert "no thruster_command and no joint_command" in warnings[1].message
     assert warnings[-1].number("lockstep_timeouts") == 2

@@ -98,7 +98,7 @@ def test_who_is_missing_is_printed_and_named_in_the_error(monkeypatch, capfd):
         with pytest.raises(
             RunError, match=r"timed out after 1 s .*motion_planner: has not come up"
         ):
-            leader.lead(spinner, None)
+            leader.conduct(spinner, None)
     err = capfd.readouterr().err
     assert "waiting for: " in err
     assert "controller: has not come up" in err

@@ -181,7 +181,7 @@ class TestStartOfTheArm:
         scenario = load_scenario("hover", settings)
         vehicle = scenario.load_vehicle()
         assert initial_joints_deg(vehicle, scenario.plant) == expected
-        assert scenario.resolved(vehicle).plant.initial_joints_deg == expected
+        assert scenario.for_vehicle(vehicle).plant.initial_joints_deg == expected
 
     @pytest.mark.parametrize(
         ("setting", "text"),

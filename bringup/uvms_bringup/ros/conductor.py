@@ -1,4 +1,4 @@
-"""The conductor of a run: waits for the nodes, sends the goal, starts time, watches, records."""
+"""The conductor of a run: waits for the nodes, sends the goal, starts time, monitors, records."""
 
 import math
 import sys
@@ -35,7 +35,7 @@ NOTICE_S = 10.0
 FOREIGN_SETTLE_S = 1.0
 """Wall time in which nodes that do not answer to the roll call find their listeners."""
 SETTLE_S = 0.3
-"""Wall time after the last answers, for what was published beside them, such as a reference."""
+"""Wall time after the last answers for messages still in flight, such as a reference."""
 
 LOOP_END = (
     topics.THRUSTER_COMMAND,
@@ -46,11 +46,11 @@ LOOP_END = (
 
 
 class Conductor(Node):
-    """Leads a run from the first tick to the last and hands every message to `write`.
+    """Conducts a run from the first tick to the last and hands every message to `write`.
 
     Args:
         write: takes every message, as `Recorder` says.
-        watch: called while waiting; raises where the run cannot go on.
+        watch: called while waiting; raises if the run cannot continue.
         joint_names: in the vehicle's order, for goals that name the joints.
         foreign: roles that are filled by nodes which do not answer to the roll call.
         patient: wait for them without end, because a person starts them.
@@ -87,7 +87,7 @@ class Conductor(Node):
         self._pause = self.create_client(SetBool, "pause")
 
     def broadcast(self, vehicle: Vehicle, lockstep: bool) -> None:
-        """From now on publish what viewers want, from the messages that are recorded anyway."""
+        """From now on publish /tf and robot_description from the recorded messages."""
         states = StateBroadcaster(self, vehicle, lockstep)
         self._recorder.receivers.update(states.receivers)
         self._end = (*LOOP_END, topics.TF)
@@ -97,8 +97,8 @@ class Conductor(Node):
         """Newest simulation time, ns."""
         return self._recorder.stamp
 
-    def lead(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
-        """Bring the run to its first tick, send the goal and let time go."""
+    def conduct(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
+        """Bring the run to its first tick, send the goal and start time."""
         self._recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
         self._call(spinner, self._start, Trigger.Request(), "plant/start")
@@ -113,7 +113,7 @@ class Conductor(Node):
         self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
 
     def arrived(self, end: int) -> bool:
-        """Whether the plant stands at `end` and the answers of its last tick are recorded."""
+        """Whether the plant has reached `end` and the answers to its last tick are recorded."""
         newest = self._recorder.newest
         if self.stamp < end:
             self._arrival = None
@@ -164,7 +164,7 @@ class Conductor(Node):
         self._faults.clear()
         goal_id = UUID(
             uuid=list(uuid.uuid4().bytes)
-        )  # one for all: no second goal where asked again
+        )  # the same for every repetition, so that no second goal is created
         request = Request(
             lambda: self._client.send_goal_async(message, self._take_feedback, goal_id),
             self._client.server_is_ready,
@@ -172,7 +172,7 @@ class Conductor(Node):
         handle = self._answer_to(spinner, request, f"motion_planner: {action.name}")
         if not handle.accepted:
             reason = self._reason(spinner)
-            # A server refuses an id that it holds already: it took the goal when first asked.
+            # A server refuses an id that it already has: it accepted the goal the first time.
             if reason or request.times_asked == 1:
                 raise RunError(f"the planner rejected the goal: {reason or 'no reason given'}")
         self.goal_handle = handle
@@ -231,7 +231,7 @@ class Conductor(Node):
         self.result, self.result_status = answer.result().result, answer.result().status
 
     def progress(self) -> str:
-        """One line on where the run stands."""
+        """One line on the progress of the run."""
         text = f"t = {to_seconds(self.stamp):6.1f} s"
         if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
             text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"

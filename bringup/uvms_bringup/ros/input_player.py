@@ -50,7 +50,7 @@ class InputPlayer(Node):
         )
 
     def connected(self) -> bool:
-        """Whether the node and this one have found each other in both directions."""
+        """Whether the node and the player are connected in both directions."""
         self.lack = "; ".join(self._roll_call.poll().values())
         return not self.lack and self._matched()
 
@@ -69,7 +69,7 @@ class InputPlayer(Node):
             self._inputs[name].publish(data)
 
     def answer_to(self, tick: TickRecord) -> Future:
-        """Done when all outputs that the tick had in the recorded run have come."""
+        """Done when all outputs that the tick had in the recorded run have arrived."""
         self._pending, self._answered = tick, Future()
         self._check_answer()
         return self._answered

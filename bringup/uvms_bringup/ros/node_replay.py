@@ -36,7 +36,7 @@ FIRST_PATIENCE_S = 60.0
 FIRST_TICKS = 3
 """The first ticks may compile kernels."""
 UNANSWERED = 3
-"""After so many ticks in a row without an answer the node is given up."""
+"""The replay is aborted after this many ticks in a row without an answer."""
 LOOK_S = 0.5
 
 
@@ -70,12 +70,12 @@ class NodeReplay:
         return node_command(self.node, file, self.run.namespace)
 
     def close(self) -> None:
-        """End the node."""
+        """Stop the node."""
         self._processes.stop()
         self._spinner.shutdown()
 
     def connect(self) -> None:
-        """Wait until the node and the player have found each other."""
+        """Wait until the node and the player are connected."""
         deadline = time.monotonic() + START_PATIENCE_S
         while not self._player.connected():
             self._check()
@@ -116,7 +116,7 @@ class NodeReplay:
         return unanswered
 
     def _one(self, tick: TickRecord, patience: float) -> bool:
-        if self.node == "plant":  # it gives first, and steps on what it gets
+        if self.node == "plant":  # it publishes first, then steps with the commands
             answered = self._await(self._player.answer_to(tick), patience)
             self._player.play(tick)
             return answered
@@ -139,12 +139,12 @@ class NodeReplay:
 
     def _give_up(self, tick: TickRecord) -> None:
         raise RunError(
-            f"{self.node} gave no answer at t = {to_seconds(tick.stamp):g} s; what it printed is "
+            f"{self.node} did not answer at t = {to_seconds(tick.stamp):g} s; its output is "
             f"in {self._processes.log_of(self.node)}"
         )
 
     def _send_goal(self) -> None:
-        """The planner's goal comes after its first tick, as in every run."""
+        """The planner's goal follows its first tick, as in every run."""
         goal = self.scenario.goal.build(self._vehicle, self.scenario.plant)
         if self.node != "motion_planner" or goal is None:
             return

@@ -1,4 +1,4 @@
-"""Records every topic of a run as it is on the wire: raw CDR, stamped with simulation time."""
+"""Records every topic of a run as raw CDR, stamped with simulation time."""
 
 from collections.abc import Callable
 from struct import unpack_from
@@ -36,7 +36,7 @@ class Recorder:
         self.stamp = 0
         self.on_clock: Callable[[], None] = lambda: None
         self.newest: dict[str, int] = {}
-        self.receivers: dict[str, Callable[[bytes], None]] = {}  # others who want a topic's bytes
+        self.receivers: dict[str, Callable[[bytes], None]] = {}  # further consumers
         for topic in topics.ALL:
             self._subscribe(node, topic)
 

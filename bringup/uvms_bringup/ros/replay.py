@@ -24,9 +24,9 @@ from uvms_core.ros.node import qos_profile
 from uvms_core.ros.spin import Spinner, start
 
 DISCOVERY_S = 3.5
-"""Wall time that others get at least to find the publishers: DDS announces itself every 3 s."""
+"""Least wall time for subscribers to find the publishers: DDS announces itself every 3 s."""
 DISCOVERY_PATIENCE_S = 8.0
-"""Wall time that they get at most, and that listeners get to take the last messages."""
+"""Most wall time for that, and for subscribers to take the last messages."""
 LEAST_SLEEP_S = 1e-3
 MESSAGES_A_SPIN = 200
 
@@ -49,7 +49,7 @@ def replay(
         RunError: the rate is negative or not finite, there is no such node, or it does not answer.
         LogError: the log cannot be read or lacks what is needed.
     """
-    if rate is not None and not 0.0 <= rate < math.inf:  # which nan is not either
+    if rate is not None and not 0.0 <= rate < math.inf:  # refuses nan, too
         raise RunError(f"--rate {rate:g}: choose 0 (as fast as possible) or a finite factor above")
     if into is not None and into not in topics.NODES:
         raise RunError(f"--into {into!r}: choose one of {', '.join(topics.NODES)}")
@@ -92,20 +92,20 @@ class Player(Node):
             publisher.publish(data)
 
     def found_all(self) -> bool:
-        """Whether every listener that the graph shows has been found."""
+        """Whether every subscriber in the graph has been matched."""
         return all(
             publisher.get_subscription_count() >= self.count_subscribers(name)
             for name, publisher in self._publishers_of.items()
         )
 
     def flush(self) -> None:
-        """Wait until the listeners have what is under way."""
+        """Wait until the subscribers have acknowledged what is in flight."""
         for publisher in self._publishers_of.values():
             publisher.wait_for_all_acked(Duration(seconds=DISCOVERY_PATIENCE_S))
 
 
-def _find_listeners(player: Player, spinner: Spinner) -> None:
-    # What is sent before a listener is found is lost to it.
+def _await_subscribers(player: Player, spinner: Spinner) -> None:
+    # Messages published before a subscriber is matched are lost to it.
     end = time.monotonic() + DISCOVERY_PATIENCE_S
     spinner.spin_for(Future(), DISCOVERY_S)
     while not player.found_all() and time.monotonic() < end and not spinner.done.done():
@@ -122,7 +122,7 @@ def publish(run: RunLog, rate: float) -> int:
         print(f"left out: {lack}", flush=True)
     line = ProgressLine(_end_of(run))
     try:
-        _find_listeners(player, spinner)
+        _await_subscribers(player, spinner)
         return _publish_all(run, player, spinner, Metronome(rate), line)
     finally:
         line.end()

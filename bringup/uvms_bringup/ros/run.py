@@ -1,4 +1,4 @@
-"""`uvms run`: the nodes on a real ROS 2 graph, led and recorded from first to last tick."""
+"""`uvms run`: the nodes on a real ROS 2 graph, conducted and recorded from first to last tick."""
 
 import os
 from collections.abc import Callable, Iterator
@@ -74,7 +74,7 @@ def run_graph(
         conductor.broadcast(vehicle, pace.name == "lockstep")
         spinner = Spinner([conductor, *inside])
         try:
-            conductor.lead(spinner, goal)
+            conductor.conduct(spinner, goal)
             return _follow(conductor, spinner, to_nanoseconds(scenario.duration_s), watch, progress)
         finally:
             spinner.shutdown()

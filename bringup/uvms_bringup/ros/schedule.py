@@ -1,4 +1,4 @@
-"""What a node gets and gives in a recorded run, tick by tick."""
+"""Inputs and outputs of a node in a recorded run, tick by tick."""
 
 from collections import Counter
 from dataclasses import dataclass, field
@@ -13,7 +13,7 @@ Input = tuple[str, bytes]
 
 @dataclass
 class TickRecord:
-    """One tick of a node: recorded inputs (full topic name, bytes), and how many outputs came."""
+    """One tick of a node: recorded inputs (full topic name, bytes), and its number of outputs."""
 
     stamp: int
     inputs: list[Input] = field(default_factory=list)
@@ -21,7 +21,7 @@ class TickRecord:
 
 
 class TickOf:
-    """The tick in which a node gives an output, from the output's stamp."""
+    """The tick in which a node publishes an output, from the output's stamp."""
 
     def __init__(self, run: RunLog, period: int, planner_step: int) -> None:
         self._period, self._step = period, planner_step
@@ -37,7 +37,7 @@ class TickOf:
 
 
 def schedule(run: RunLog, node: str, tick_of: TickOf) -> list[TickRecord]:
-    """The ticks of a node, in order: those in which it gave something in the recorded run.
+    """The ticks of a node, in order: those in which it published something in the recorded run.
 
     Inputs belong to the first tick at or after their stamp.
 

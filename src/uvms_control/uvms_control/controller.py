@@ -9,7 +9,7 @@ from uvms_control.config import ControlConfig
 from uvms_control.reference import ReferenceSample, check_reference, sample_reference
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
-from uvms_control.vehicle_data import effort_limits, joint_limits
+from uvms_control.vehicle_data import effort_limits
 from uvms_core.errors import SignalError
 from uvms_core.freshness import check_age
 from uvms_core.signals import (
@@ -21,7 +21,7 @@ from uvms_core.signals import (
     Wrench,
     to_seconds,
 )
-from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_dynamics import build_model, inverse_dynamics, joint_passive_torque, mass_matrix
 
 

@@ -2,11 +2,11 @@
 
 from collections.abc import Iterator
 
-from uvms_control.allocation import ThrustAllocator
 from uvms_control.config import AllocatorConfig, ControlConfig
-from uvms_control.controller import Controller
+from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_core import topics
 from uvms_core.part import Output, Part
+from uvms_core.plugin import create
 from uvms_core.signals import Wrench
 from uvms_core.tick_gate import Covering, Same, Tick
 from uvms_core.vehicle import Vehicle
@@ -19,7 +19,7 @@ class ControllerPart(Part):
     outputs = topics.NODES["controller"].outputs
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig) -> None:
-        self.law = Controller(vehicle, config)
+        self.law: ControlLaw = create(config, vehicle)
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),
@@ -46,7 +46,7 @@ class AllocatorPart(Part):
     outputs = topics.NODES["thrust_allocator"].outputs
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig) -> None:
-        self.method = ThrustAllocator(vehicle, config)
+        self.method: AllocationMethod = create(config, vehicle)
         self.inputs = {topics.WRENCH_COMMAND: Same()}
 
     def step(self, tick: Tick) -> Iterator[Output]:

@@ -4,9 +4,9 @@ A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS pa
 from its fields, so that a gain has one name, one default and one description.
 """
 
-from typing import Any, get_args
+from typing import get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from uvms_core.errors import ConfigError, UvmsError
 
@@ -18,15 +18,6 @@ class Config(BaseModel):
 
     model_config = ConfigDict(
         extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
-    )
-
-
-class PluginConfig(Config):
-    """Base of a section whose part may be replaced: the parameters that only the part knows."""
-
-    parameters: Any = Field(
-        default_factory=dict,
-        description="what only the chosen part knows, by name (its class lists them as Parameters)",
     )
 
 

@@ -158,6 +158,7 @@ class NodeTopics:
 
     inputs: tuple[Topic, ...]
     outputs: tuple[Topic, ...]
+    actions: tuple[Action, ...] = ()  # that it serves
 
 
 NODES: dict[str, NodeTopics] = {
@@ -171,7 +172,7 @@ NODES: dict[str, NodeTopics] = {
         (CLOCK, ODOMETRY, JOINT_STATES, WRENCH_ACHIEVED),
         (DISTURBANCE, DISTURBANCE_BUDGET),
     ),
-    "motion_planner": NodeTopics((CLOCK, ODOMETRY, JOINT_STATES), (REFERENCE,)),
+    "motion_planner": NodeTopics((CLOCK, ODOMETRY, JOINT_STATES), (REFERENCE,), ACTIONS),
     "controller": NodeTopics(
         (CLOCK, ODOMETRY, JOINT_STATES, REFERENCE, DISTURBANCE),
         (WRENCH_COMMAND, JOINT_COMMAND),
@@ -189,9 +190,9 @@ def readers(topic: Topic) -> set[str]:
 
 
 def contract(name: str) -> str:
-    """What the node of a name reads and writes, as text for whoever writes one."""
+    """Interface of the node of a name, as text for whoever replaces it."""
     own = NODES[name]
-    rows = [("reads", own.inputs), ("writes", own.outputs)]
-    return "\n".join(
-        f"  {verb:6} {topic.name} [{topic.type}]" for verb, some in rows for topic in some
-    )
+    rows: list[tuple[str, Topic | Action]] = [("reads", topic) for topic in own.inputs]
+    rows += [("writes", topic) for topic in own.outputs]
+    rows += [("serves", action) for action in own.actions]
+    return "\n".join(f"  {verb:6} {each.name} [{each.type}]" for verb, each in rows)

@@ -6,12 +6,14 @@ from typing import Any
 from uvms_core import topics
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
+from uvms_core.plugin import create
 from uvms_core.signals import to_nanoseconds
 from uvms_core.tick_gate import Periodic, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Sensor
-from uvms_observer.disturbance import DisturbanceObserver, ObserverConfig
-from uvms_observer.navigation import NavigationConfig, NavigationFilter
+from uvms_observer.disturbance import ObserverConfig
+from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
+from uvms_observer.navigation import NavigationConfig
 
 
 class NavigationPart(Part):
@@ -27,7 +29,7 @@ class NavigationPart(Part):
     outputs = topics.NODES["navigation"].outputs
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig, period: int) -> None:
-        self.filter = NavigationFilter(vehicle, config)
+        self.filter: NavigationEstimator = create(config, vehicle)
         self.every = period
         sensors = vehicle.sensors
         self.inputs = {
@@ -70,7 +72,7 @@ class ObserverPart(Part):
     outputs = topics.NODES["disturbance_observer"].outputs
 
     def __init__(self, vehicle: Vehicle, config: ObserverConfig, period: int) -> None:
-        self.law = DisturbanceObserver(vehicle, config)
+        self.law: ObserverLaw = create(config, vehicle)
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),

@@ -15,8 +15,8 @@ class ThrustAllocatorNode(PartNode):
     def make_part(self) -> AllocatorPart:
         """The allocation method that the parameters name."""
         part = AllocatorPart(self.vehicle, self.config(AllocatorConfig))
-        if part.method.warning:
-            self.get_logger().warning(part.method.warning)
+        if warning := getattr(part.method, "warning", None):
+            self.get_logger().warning(warning)
         return part
 
 

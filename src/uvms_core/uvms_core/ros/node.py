@@ -1,4 +1,4 @@
-"""What the six nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
+"""What our nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -28,7 +28,7 @@ from uvms_core.vehicle import Vehicle, load_vehicle
 C = TypeVar("C", bound=Config)
 DIAGNOSTICS_PERIOD = NANOSECONDS
 NEEDED = frozenset(t for n in topics.NODES.values() for t in n.inputs) - {topics.CLOCK}
-"""Topics that some node of the loop reads: a run cannot start before somebody listens to them."""
+"""Topics that some node of the loop reads: a run cannot start before they have a subscriber."""
 
 
 def qos_profile(qos: Qos) -> QoSProfile:
@@ -126,9 +126,9 @@ class UvmsNode(Node):
         self._senders[topic](signal)
 
     def guard(self, action: Callable[[], None]) -> None:
-        """Run a step; an error of ours is reported and the node goes on with what it had.
+        """Run a step; an error of ours is reported and the node keeps its last good state.
 
-        A plant that diverged has nothing to go on with: that error ends the node.
+        A plant that diverged has no good state left: that error ends the node.
         """
         try:
             action()
@@ -163,15 +163,15 @@ class UvmsNode(Node):
             self.report(stamp, **values)
 
     def names_of(self, topic: Topic) -> tuple[str, ...]:
-        """Names that the topic's values come under: of thrusters or of joints."""
+        """Names of the topic's values: of thrusters or of joints."""
         by_thruster = topic in (topics.THRUSTER_COMMAND, topics.ALLOCATION)
         return self.vehicle.thruster_names if by_thruster else self.vehicle.joint_names
 
     def missing_peers(self) -> list[str]:
-        """What this node still lacks before a run can start, in words.
+        """What this node is still missing before a run can start, as text.
 
-        Each of its endpoints must have found all that the graph holds on the other side: what is
-        sent before that is lost.
+        Each of its endpoints must have matched every peer in the graph: messages published before
+        that are lost.
         """
         lacks = []
         for topic, subscription in self._receivers.items():

@@ -1,4 +1,4 @@
-"""Asks who is there: a run cannot start before its nodes have found each other.
+"""Checks who is there: a run cannot start before its nodes have found each other.
 
 A role of the graph is filled by one of our nodes, which answers its service `ready`, or by anybody
 else's node, which only has to publish what the others read of that role.

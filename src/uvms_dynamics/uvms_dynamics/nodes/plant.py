@@ -23,7 +23,7 @@ from uvms_dynamics.simulation.publication import plant_outputs
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
-"""How often an idle plant looks whether all its peers are there, s of wall time."""
+"""How often an idle plant checks whether all its peers are there, s of wall time."""
 NOTICE = 10.0
 """How often it logs what is still missing, s of wall time."""
 SETTLE = 1.0
@@ -83,11 +83,11 @@ class PlantNode(UvmsNode):
         self.create_service(SetBool, "pause", self._answer_pause)
 
     def deadline(self) -> float | None:
-        """When the plant wants to be woken, in monotonic wall seconds."""
+        """When the plant is to be woken, monotonic wall time in s."""
         return self._deadline
 
     def on_wake(self) -> None:
-        """The deadline passed: look for peers, or go on without the missing commands."""
+        """The deadline passed: check for peers, or continue without the missing commands."""
         if not self._running:
             self._deadline = time.monotonic() + POLL
             if self._wanted:
@@ -170,7 +170,7 @@ class PlantNode(UvmsNode):
         self._timeouts += 1
         text = (
             f"t = {to_seconds(self._plant.stamp):.2f} s: no {' and no '.join(missing)} in time; "
-            "going on with the safe command"
+            "continuing with the safe command"
         )
         self.get_logger().warning(text)
         self.report(self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts)
@@ -199,7 +199,10 @@ class PlantNode(UvmsNode):
         return self._commands[topics.JOINT_COMMAND.name]
 
     def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = True, "already running"  # asked again: no fault
+        response.success, response.message = (
+            True,
+            "already running",
+        )
         if not self._running:
             response.message = "started"
             self._start()
@@ -209,8 +212,8 @@ class PlantNode(UvmsNode):
         was_paused, self._paused, response.success = self._paused, request.data, True
         response.message = f"paused at {to_seconds(self._plant.stamp):.2f} s"
         if not request.data:
-            response.message = f"going on from {to_seconds(self._plant.stamp):.2f} s"
-            if was_paused:  # else time would leap a period
+            response.message = f"continuing from {to_seconds(self._plant.stamp):.2f} s"
+            if was_paused:  # otherwise time would skip a period
                 self._resume()
         return response
 

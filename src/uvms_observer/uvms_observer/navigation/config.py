@@ -1,8 +1,13 @@
 """Parameters of the navigation filter; what the sensors are like is in the vehicle file."""
 
+from typing import ClassVar
+
 from pydantic import Field
 
+from uvms_core import registry
 from uvms_core.config import Config
+from uvms_core.plugin import PluginConfig, Slot
+from uvms_observer.interfaces import NavigationEstimator
 
 Vector3 = tuple[float, float, float]
 
@@ -16,9 +21,16 @@ class NoiseFloor(Config):
     position_m: float = Field(1e-2, gt=0.0, description="GPS, m")
 
 
-class NavigationConfig(Config):
+class NavigationConfig(PluginConfig):
     """How the navigation filter starts and how far it trusts model and sensors."""
 
+    slot: ClassVar[Slot] = Slot(registry.NAVIGATION_FILTERS, "filter", NavigationEstimator)
+
+    filter: str = Field(
+        "error_state_ekf",
+        description="navigation filter: error_state_ekf (eq. (20)), that of an installed package,"
+        " or a class as my_package.my_module:MyFilter",
+    )
     initial_position_m: Vector3 = Field(
         (0.0, 0.0, 0.0),
         description="where the mission starts: body origin in map_ned, m; the depth comes from "

@@ -17,7 +17,7 @@ from uvms_planner.linear import copy_into
 from uvms_planner.refine import refine
 
 
-class GeneticSettings(NamedTuple):
+class EvolutionSettings(NamedTuple):
     """The numbers of GeneticConfig as the kernels take them."""
 
     population: int

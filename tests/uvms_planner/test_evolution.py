@@ -5,8 +5,7 @@ from hypothesis import strategies as st
 from planner_rig import START, solver_of, target_near
 
 from uvms_core.rng import generator
-from uvms_planner.fitness import cost, judge
-from uvms_planner.genetic import (
+from uvms_planner.evolution import (
     breed,
     cross_over,
     evolve,
@@ -15,12 +14,13 @@ from uvms_planner.genetic import (
     roulette,
     selection_fitness,
 )
+from uvms_planner.fitness import cost, judge
+from uvms_planner.methods.genetic import settings as evolution_settings
 from uvms_planner.projection import tool_pose
 from uvms_planner.refine import refine
-from uvms_planner.solver import _settings
 
 SOLVER = solver_of()
-SETTINGS = _settings(SOLVER._config)
+SETTINGS = evolution_settings(SOLVER._config.genetic)
 STILL = np.zeros(8)
 
 
