@@ -30,6 +30,7 @@ def with_three_joints(folder: Path) -> Path:
     data = yaml.safe_load(VEHICLE.read_text(encoding="utf-8"))
     for name in ("joints", "links", "stowed_deg"):
         del data["arm"][name][-1]
+    del data["arm"]["postures_deg"]
     file = folder / "three.yaml"
     file.write_text(yaml.safe_dump(data), encoding="utf-8")
     return file
