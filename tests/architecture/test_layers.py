@@ -1,9 +1,8 @@
 """ROS stays in the shells, and packages depend downwards only."""
 
 import pytest
-from project import PACKAGES, ROOT, imports, modules
+from project import PACKAGES, ROOT, imports, is_ros, modules
 
-ROS = {"rclpy", "builtin_interfaces", "rosidl_runtime_py", "std_srvs", "ament_index_python"}
 SHELLS = {"nodes", "ros"}
 # What a package may import besides itself; uvms_msgs is for its shells.
 MAY_IMPORT = {
@@ -15,10 +14,6 @@ MAY_IMPORT = {
     "uvms_analysis": {"uvms_core", "uvms_dynamics"},
     "uvms_bringup": set(PACKAGES),
 }
-
-
-def is_ros(name):
-    return name in ROS or name.endswith("_msgs")
 
 
 @pytest.mark.parametrize("package", PACKAGES)

@@ -4,7 +4,16 @@ import ast
 import xml.etree.ElementTree as ElementTree
 
 import pytest
-from project import CODE, INTERFACES, PACKAGES, ROOT, imports, modules, python_files
+from project import (
+    CODE,
+    INTERFACES,
+    PACKAGES,
+    ROOT,
+    imports,
+    modules,
+    python_files,
+    setup_arguments,
+)
 
 LONGEST = 400
 EXECUTABLES = {
@@ -16,23 +25,6 @@ EXECUTABLES = {
     "uvms_analysis": set(),
     "uvms_bringup": {"uvms", "state_publisher"},
 }
-
-
-def setup_arguments(folder):
-    """Keyword arguments of setup() that are written as constants, and PACKAGE as `name`."""
-    tree = ast.parse((folder / "setup.py").read_text())
-    call = next(
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "setup"
-    )
-    constants = {}
-    for keyword in call.keywords:
-        try:
-            constants[keyword.arg] = ast.literal_eval(keyword.value)
-        except ValueError:
-            continue
-    return constants
 
 
 def manifest(folder):
