@@ -1,6 +1,7 @@
 """What the architecture tests look at: packages, files and their imports."""
 
 import ast
+import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator
 from contextlib import suppress
 from pathlib import Path
@@ -61,6 +62,11 @@ def setup_arguments(folder: Path) -> dict[str, Any]:
         with suppress(ValueError):
             constants[keyword.arg] = ast.literal_eval(keyword.value)
     return constants
+
+
+def manifest(folder: Path) -> ElementTree.Element:
+    """The root element of a package.xml."""
+    return ElementTree.parse(folder / "package.xml").getroot()
 
 
 def required(package: str, extra: str | None = None) -> set[str]:

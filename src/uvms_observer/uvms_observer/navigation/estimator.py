@@ -19,9 +19,9 @@ from uvms_core.signals import (
 )
 from uvms_observer.navigation import updates
 from uvms_observer.navigation.alignment import aligned
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
 from uvms_observer.navigation.samples import NAMES, Sample
