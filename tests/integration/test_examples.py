@@ -40,7 +40,7 @@ def numbers(line):
 
 
 def test_there_is_one_for_each_package():
-    packages = {"dynamics", "planner", "control", "observer", "bringup"}
+    packages = {"core", "dynamics", "planner", "control", "observer", "analysis", "bringup"}
     assert packages <= {script.stem.split("_")[0] for script in SCRIPTS}
 
 
@@ -91,3 +91,20 @@ def test_genetic_plan_disturbs_less_than_the_arm_alone(said):
 def test_own_controller_takes_the_place_of_ours(said):
     ours, own = map(numbers, said(FOLDER / "own_controller.py"))
     assert ours[0] < 5.0 < own[0] < 25.0
+
+
+def test_vehicle_file_with_its_changes_becomes_a_urdf(said):
+    lines = said(FOLDER / "core_vehicle.py")
+    masses = {line.split()[0]: numbers(line)[0] for line in lines[3:8]}
+    assert masses["hull"] == 190.0
+    assert masses["gripper"] == 0.8
+    assert lines[-1] == "of these move: swing, shoulder, elbow, wrist"
+
+
+def test_own_log_is_summarised_and_lacks_what_was_not_written(said):
+    lines = said(FOLDER / "analysis_summary.py")
+    start, end = numbers(lines[1].split(":")[1])
+    assert start == 10.0
+    assert 12.0 < end < 15.0  # of a vehicle 8.5 kg too heavy, after 10 s
+    assert all(value > 0.0 for line in lines[2:5] for value in numbers(line))
+    assert lines[5] == "navigation_error_m: {'rms': None, 'max': None}"

@@ -23,7 +23,7 @@ from uvms_analysis.log.recover import recover
 from uvms_analysis.log.schema import qos_from_yaml, qos_yaml
 from uvms_analysis.log.writer import CHUNK_SIZE, LogWriter
 from uvms_core import topics
-from uvms_core.cdr import type_hash
+from uvms_core.cdr import codec, type_hash
 from uvms_core.signals import PathGoal, Wrench
 from uvms_core.topics import LATCHED, Qos
 
@@ -153,7 +153,9 @@ def test_a_topic_that_is_not_there_is_named(log_file):
 
 def test_one_topic_has_one_type(tmp_path):
     with LogWriter(tmp_path / "a.mcap") as log:
-        log.declare("/a", "std_msgs/msg/String", "")
+        log.write(
+            "/a", "std_msgs/msg/String", "", 0, codec("std_msgs/msg/String").encode({"data": ""})
+        )
         with pytest.raises(LogError, match="/a is std_msgs/msg/String, not std_msgs/msg/Empty"):
             log.write("/a", "std_msgs/msg/Empty", "", 0, b"")
 

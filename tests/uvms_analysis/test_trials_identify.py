@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from command_line import main
 from made_trials import DATA, VEHICLE, made_trial, write_trial
 
 from uvms_analysis.errors import TrialError
@@ -15,7 +16,6 @@ from uvms_analysis.trials.parameters import CANDIDATES, changed, present, value_
 from uvms_analysis.trials.predict import drive_model, dynamic, prepare_trial
 from uvms_analysis.trials.rewrite import rewritten
 from uvms_analysis.trials.score import scores
-from uvms_bringup.cli import main
 from uvms_core.vehicle import load_vehicle, vehicle_from_data
 
 STATIC = ("hull.cb_m.0", "hull.cb_m.1", "hull.cb_m.2")

@@ -8,8 +8,8 @@ from urdf_chains import real_vehicle
 from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import build_model, forward_dynamics, quat_to_matrix, restoring_wrench
 from uvms_dynamics.simulation.prescribed import (
-    JointMotion,
     Load,
+    PrescribedJoints,
     base_acceleration,
     base_inertia,
     float_freely,
@@ -22,7 +22,7 @@ def still(q, steps, step=0.05):
     """A motion in which the arm holds its pose."""
     rows = 2 * steps + 1
     none = np.zeros((rows, len(q)))
-    return JointMotion(np.full(steps, step), np.tile(q, (rows, 1)), none, none)
+    return PrescribedJoints(np.full(steps, step), np.tile(q, (rows, 1)), none, none)
 
 
 def state(quat, nu=(0.0,) * 6):

@@ -21,5 +21,13 @@ class SignalError(UvmsError):
     """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
 
 
+class DefinitionError(UvmsError):
+    """A message type is not installed, or its definition cannot be read."""
+
+
+class CdrError(UvmsError):
+    """Bytes are not a message of the type, or values do not fit it."""
+
+
 class PlantDiverged(UvmsError):  # noqa: N818 (an event of the simulation rather than a fault)
     """The plant's state is not finite any more; names the stamp and the state."""

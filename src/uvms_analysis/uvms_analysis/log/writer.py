@@ -84,11 +84,6 @@ class LogWriter:
         self._writer.add_message(channel[0], stamp, data, stamp)
         self.message_count += 1
 
-    def declare(self, topic: str, type_name: str, qos_yaml: str) -> None:
-        """Make a channel known before its first message, or without any."""
-        if topic not in self._channels:
-            self._register(topic, type_name, qos_yaml)
-
     def _register(self, topic: str, type_name: str, qos: str) -> tuple[int, str]:
         self._copy_schema(type_name, lambda: schema.schema_text(type_name).encode())
         metadata = schema.channel_metadata(type_name, qos)

@@ -20,7 +20,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model, restoring_wrench
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_dynamics.simulation.prescribed import JointMotion, Load, float_freely
+from uvms_dynamics.simulation.prescribed import Load, PrescribedJoints, float_freely
 from uvms_dynamics.simulation.tether import tether_load
 
 _LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
@@ -31,7 +31,7 @@ class PreparedTrial(NamedTuple):
     """A trial with everything worked out that does not depend on the vehicle."""
 
     trial: Trial
-    motion: JointMotion
+    motion: PrescribedJoints
     samples: NDArray[np.int64]  # (k,) indices of the samples among the states
     start: Start
     depth: Array  # (k,) measured, m; used by `uvms identify` only

@@ -2,6 +2,6 @@
 
 from uvms_core.cdr.codec import Codec, codec
 from uvms_core.cdr.definitions import schema_text, type_hash
-from uvms_core.cdr.errors import CdrError, DefinitionError
+from uvms_core.errors import CdrError, DefinitionError
 
 __all__ = ["CdrError", "Codec", "DefinitionError", "codec", "schema_text", "type_hash"]

@@ -8,8 +8,8 @@ from typing import Any
 from uvms_core.cdr.decode import make_decoder
 from uvms_core.cdr.definitions import schema_text
 from uvms_core.cdr.encode import HEADER, make_encoder
-from uvms_core.cdr.errors import CdrError
 from uvms_core.cdr.parse import parse_schema
+from uvms_core.errors import CdrError
 
 
 class Codec:

@@ -11,7 +11,6 @@ from uvms_core.cdr.layout import Alignment, Source
 from uvms_core.cdr.parse import PRIMITIVES, SEQUENCE, STRING, Field
 
 Types = Mapping[str, tuple[Field, ...]]
-DUMMY = "structure_needs_at_least_one_member"
 
 
 class _Decoder:

@@ -14,8 +14,8 @@ from collections import deque
 from functools import cache
 from pathlib import Path
 
-from uvms_core.cdr.errors import DefinitionError
 from uvms_core.cdr.parse import parse_fields
+from uvms_core.errors import DefinitionError
 
 SEPARATOR = "=" * 80
 

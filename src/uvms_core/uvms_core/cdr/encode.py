@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from uvms_core.cdr.errors import CdrError
 from uvms_core.cdr.layout import Alignment, Source
 from uvms_core.cdr.parse import PRIMITIVES, SEQUENCE, STRING, Field
+from uvms_core.errors import CdrError
 
 HEADER = b"\x00\x01\x00\x00"
 """Encapsulation: plain CDR, little endian."""

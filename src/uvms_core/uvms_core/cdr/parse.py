@@ -3,7 +3,7 @@
 import re
 from dataclasses import dataclass
 
-from uvms_core.cdr.errors import DefinitionError
+from uvms_core.errors import DefinitionError
 
 PRIMITIVES: dict[str, tuple[str, int]] = {
     "bool": ("?", 1),

@@ -25,7 +25,7 @@ STATE = 13
 """Position (3,) and quaternion (4,) in the world, velocity (6,) in the body frame."""
 
 
-class JointMotion(NamedTuple):
+class PrescribedJoints(NamedTuple):
     """The arm's motion over m steps: rows at the begin, the middle and the end of each step."""
 
     steps: Array  # (m,) s
@@ -46,7 +46,7 @@ class Load(NamedTuple):
     fading_time: float = 1.0  # s
 
 
-def float_freely(model: Model, start: Array, motion: JointMotion, load: Load) -> Array:
+def float_freely(model: Model, start: Array, motion: PrescribedJoints, load: Load) -> Array:
     """States (m+1, 13) from the state `start` (13,), by classical Runge-Kutta steps."""
     table = np.array([[load.weight, *load.moment], [0.0, *load.moment_fading]])
     inverse = np.linalg.inv(base_inertia(model, motion.q))

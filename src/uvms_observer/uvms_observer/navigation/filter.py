@@ -19,9 +19,9 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, in_order
 from uvms_observer.navigation.state import NavigationState
 

@@ -7,8 +7,8 @@ from uvms_core import registry
 from uvms_core.errors import SignalError
 from uvms_core.sensors import sensor_types
 from uvms_core.vehicle import Vehicle
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
 
 
 class Reading(NamedTuple):

@@ -7,10 +7,10 @@ from uvms_core.signals import Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import DVL_SCALE, SIZE, NavigationState
 
 

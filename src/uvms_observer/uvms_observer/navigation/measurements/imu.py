@@ -14,10 +14,10 @@ from uvms_dynamics.kernels.rotations import (
     quat_to_rotation_vector,
     rotation_vector_to_quat,
 )
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import attitude_variance
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
