@@ -144,8 +144,8 @@ def test_nothing_at_all_is_an_error(data):
         identify(data, resting, candidates=chosen(data, "hull.quadratic_damping.3"))
 
 
-def test_two_trials_do_not_show_errors(data, made):
-    with pytest.raises(TrialError, match=r"2 trials do not show how well .* at least 3"):
+def test_two_trials_are_too_few_for_errors(data, made):
+    with pytest.raises(TrialError, match=r"2 trials are too few to show how well .* at least 3"):
         fit(data, [prepare_trial(trial) for trial in made[1][:2]], chosen(data, *STATIC))
 
 

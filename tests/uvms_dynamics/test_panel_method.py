@@ -119,7 +119,7 @@ def test_frame_changes_as_x_transposed_m_x(word):
 
 
 def test_energy_does_not_depend_on_the_frame():
-    """X by what it is for: the same motion, told in both frames, has the same energy."""
+    """X by what it is for: the same motion, written in both frames, has the same energy."""
     M = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]) + 0.1
     position, rotation = TURNED
     v, w = np.array([0.3, -0.2, 0.5]), np.array([1.0, 0.4, -0.7])
@@ -268,7 +268,7 @@ def with_thruster_that_overlaps(panels):
     ("spoil", "text"),
     [
         (with_hole, "the surface is not closed: 3 of "),
-        (with_one_turned, "neighbouring panels point to different sides at 3 edges"),
+        (with_one_turned, "neighbouring panels have opposite orientation at 3 edges"),
         (with_inner_wall, "2 separate surfaces, one of which encloses -"),
         (with_battery, "2 separate surfaces, two of which overlap or lie within"),
         (with_thruster_that_overlaps, "two of which overlap .*at "),
@@ -308,7 +308,7 @@ def test_unreadable_files_are_named(tmp_path):
     with pytest.raises(PanelMethodError, match=r"hull\.stl: there is no such mesh file"):
         load_panels(tmp_path / "hull.stl")
     for name in ("hull.stl", "hull.gdf", "hull.doc"):
-        (tmp_path / name).write_text("nothing of use")
+        (tmp_path / name).write_text("not a mesh")
         with pytest.raises(PanelMethodError, match=name):
             load_panels(tmp_path / name)
 
