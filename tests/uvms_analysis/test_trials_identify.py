@@ -128,7 +128,7 @@ def test_the_vehicle_file_is_not_written_over(tmp_path, capsys):
 
 
 def test_an_arm_at_rest_shows_little(data):
-    """In one pose of the arm, its heading and the static moment are not to be printed apart."""
+    """In one pose of the arm, its heading and the static moment cannot be separated."""
     resting = [each for each in prepared_trials(str(DATA)) if "baseline" in each.trial.name]
     candidates = chosen(data, *STATIC[:2], "arm.base.rpy_deg.2", "hull.linear_damping.3")
     found = identify(data, resting, candidates=candidates)

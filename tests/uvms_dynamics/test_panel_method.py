@@ -326,14 +326,17 @@ def test_native_format_of_panel_codes_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("word", "text"),
     [
-        ("ball:1", "shape 'ball' is unknown; known are sphere:RADIUS, spheroid:LENGTH,DIAMETER"),
+        (
+            "ball:1",
+            "shape 'ball' is unknown; choose one of sphere:RADIUS, spheroid:LENGTH,DIAMETER",
+        ),
         ("sphere:big", "must be sphere:RADIUS with numbers in m"),
         ("box:1,2", "has 2 numbers; must be box:LENGTH_X,LENGTH_Y,LENGTH_Z"),
         ("cylinder:-1,2", "radius -1: must be a length in m, > 0"),
         ("sphere:nan", "radius nan: must be a length in m, > 0"),
     ],
 )
-def test_shapes_that_are_none_are_named(word, text):
+def test_unknown_shapes_are_named_with_the_choices(word, text):
     with pytest.raises(PanelMethodError, match=text):
         parse_solid(word)
 

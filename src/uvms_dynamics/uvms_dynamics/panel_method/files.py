@@ -54,7 +54,7 @@ def _read(path: Path) -> Array:
         choices = ", ".join(FORMATS)
         raise PanelMethodError(
             f"{path}: cannot be read as a mesh ({fault}); known formats are {choices} and"
-            " what capytaine reads (.gdf, .mar, .pnl, .hst; with meshio installed .msh, .vtk and more)"
+            " those of capytaine (.gdf, .mar, .pnl, .hst; with meshio .msh, .vtk and more)"
         ) from fault
 
 
