@@ -122,10 +122,11 @@ def test_arrows_stand_outside_the_hull_and_point_along_the_thrust(log, to_viewer
     shown = np.abs(thrust) > SHORTEST * np.abs(thrust).max()
     force = (run.disturbance.restoring + run.disturbance.coupling)[0, :3]
     assert len(heads) == shown.sum() + (np.linalg.norm(force) > SHORTEST * np.abs(thrust).max())
-    for head, item, value in zip(heads, [t for t, one in zip(run.vehicle.thrusters, shown, strict=True) if one], thrust[shown],
-                                 strict=False):  # fmt: skip
+    pairs = zip(run.vehicle.thrusters, thrust, strict=True)
+    expected = [np.sign(value) * np.array(item.direction) for item, value in pairs]
+    for head, along in zip(heads, np.array(expected)[shown], strict=False):
         tip = head.axes[:, 2] / np.linalg.norm(head.axes[:, 2])
-        np.testing.assert_allclose(tip, np.sign(value) * np.array(item.direction), atol=1e-12)
+        np.testing.assert_allclose(tip, along, atol=1e-12)
         through = chord(run.vehicle.hull, head.centre - pose[0], tip)
         assert through is None or not through[0] < 0.0 < through[1]
 
