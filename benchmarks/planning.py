@@ -1,4 +1,4 @@
-"""Drives the planner alone along the manipulation's path, and judges what it planned."""
+"""Drives the planner alone along the manipulation's path, and evaluates the plan."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,7 +14,7 @@ from uvms_planner import MotionPlanner
 
 @dataclass
 class Planned:
-    """What the planner gave along the path."""
+    """The planner's output along the path."""
 
     step_s: float
     references: list[Reference] = field(default_factory=list)
@@ -26,7 +26,7 @@ class Planned:
 def plan(method: str, seconds: float, clock: Callable[[], float] = lambda: 0.0) -> Planned:
     """The references of the first `seconds` of the path by one of the planner's methods.
 
-    The vehicle is told to stand still: the plan goes on from the plan, not from the odometry.
+    The odometry stays at the start: the planner continues from its own plan.
     """
     scenario = load_scenario("manipulation", [f"planner.method={method}"])
     vehicle, start = scenario.load_vehicle(), scenario.plant
@@ -44,7 +44,7 @@ def plan(method: str, seconds: float, clock: Callable[[], float] = lambda: 0.0) 
         step = planner.step(stamp, odometry, joints)
         spent = clock() - began
         result.references += step.references
-        if step.step is not None and index > 4:  # the first ones load kernels
+        if step.step is not None and index > 4:  # the first steps load kernels
             result.step_seconds.append(spent)
             result.evaluations.append(step.step.evaluations)
         if step.finished is not None:

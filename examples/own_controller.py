@@ -1,8 +1,8 @@
-"""Put a controller of your own into the loop, and compare it with the one that comes with UVMS.
+"""A controller of your own in the loop, compared with the one that comes with UVMS.
 
-Any object with `step(odometry, joints, disturbance, reference) -> (Wrench, JointCommand)` will do.
-This one holds the vehicle by proportional and derivative terms alone and knows nothing of the arm,
-whose joints it leaves to UVMS. Run it: python examples/own_controller.py
+Uses uvms_bringup and uvms_control. Any object with `step(odometry, joints, disturbance, reference)`
+that returns (Wrench, JointCommand) will do. This one controls the vehicle by proportional and
+derivative terms only, and leaves the joints to UVMS. Run it: python examples/own_controller.py
 """
 
 import numpy as np
@@ -30,10 +30,10 @@ class PdController:
         disturbance: Wrench | None,
         reference: Reference,
     ) -> tuple[Wrench, JointCommand]:
-        """The vehicle's wrench from here, the joints' torques from the arm's own law."""
+        """The vehicle's wrench by this law, the joints' torques by that of UVMS."""
         _, torques = self.arm.step(odometry, joints, disturbance, reference)
-        wanted = sample_reference(reference, odometry.stamp)
-        found = tracking_error(odometry, wanted)
+        target = sample_reference(reference, odometry.stamp)
+        found = tracking_error(odometry, target)
         return Wrench(odometry.stamp, self.K * found.error + self.D * found.rate), torques
 
 
@@ -54,6 +54,6 @@ def run(own: bool) -> np.ndarray:
 
 
 if __name__ == "__main__":
-    for own, name in ((False, "UVMS: S-surface, model, observer"), (True, "PD alone")):
+    for own, name in ((False, "UVMS: S-surface, model, observer"), (True, "PD only")):
         roll, pitch = np.abs(run(own)).max(axis=0)
         print(f"{name:34s} greatest roll {roll:6.2f} deg, greatest pitch {pitch:6.2f} deg")

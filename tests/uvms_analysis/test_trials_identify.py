@@ -129,7 +129,7 @@ def test_the_vehicle_file_is_not_written_over(tmp_path, capsys):
 
 
 def test_an_arm_at_rest_shows_little(data):
-    """In one pose of the arm, its heading and the static moment are not to be printed apart."""
+    """In one pose of the arm, its heading and the static moment cannot be separated."""
     resting = [each for each in prepared_trials(str(DATA)) if "baseline" in each.trial.name]
     candidates = chosen(data, *STATIC[:2], "arm.base.rpy_deg.2", "hull.linear_damping.3")
     found = identify(data, resting, candidates=candidates)
@@ -145,8 +145,8 @@ def test_nothing_at_all_is_an_error(data):
         identify(data, resting, candidates=chosen(data, "hull.quadratic_damping.3"))
 
 
-def test_two_trials_do_not_show_errors(data, made):
-    with pytest.raises(TrialError, match=r"2 trials do not show how well .* at least 3"):
+def test_two_trials_are_too_few_for_errors(data, made):
+    with pytest.raises(TrialError, match=r"2 trials are too few to show how well .* at least 3"):
         fit(data, [prepare_trial(trial) for trial in made[1][:2]], chosen(data, *STATIC))
 
 

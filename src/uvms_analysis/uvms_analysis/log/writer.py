@@ -1,4 +1,4 @@
-"""Writes a run to MCAP in the manner of rosbag2, safe against being killed."""
+"""Write a run to MCAP in the format of rosbag2, safe against being killed."""
 
 import os
 from collections.abc import Mapping
@@ -17,7 +17,7 @@ LIBRARY = "uvms"
 
 
 class _Unbuffered:
-    """A file that hands every write to the system at once, so that it outlives this process."""
+    """A file that passes every write to the system at once, so that a killed process loses none."""
 
     def __init__(self, path: Path) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
@@ -75,7 +75,7 @@ class LogWriter:
         self._writer.add_metadata(name, {key: str(value) for key, value in values.items()})
 
     def write(self, topic: str, type_name: str, qos_yaml: str, stamp: int, data: bytes) -> None:
-        """One message: CDR bytes as they came, at a stamp in nanoseconds."""
+        """One message: CDR bytes as received, at a stamp in nanoseconds."""
         channel = self._channels.get(topic)
         if channel is None:
             channel = self._register(topic, type_name, qos_yaml)
@@ -107,7 +107,7 @@ class LogWriter:
     def copy_channel(
         self, topic: str, type_name: str, text: bytes, metadata: Mapping[str, str]
     ) -> None:
-        """Make a channel known as another log describes it; its type need not be installed."""
+        """Register a channel as another log describes it; its type need not be installed."""
         if topic not in self._channels:
             self._copy_schema(type_name, lambda: text)
             self._add_channel(topic, type_name, metadata)
