@@ -50,10 +50,10 @@ class MotionPlannerNode(UvmsNode):
         for reference in plan.references:
             self.send(topics.REFERENCE, reference)
         self._stamp = tick.stamp
-        self._tell(plan)
+        self._report_goal(plan)
         self.report(tick.stamp, step_ms=elapsed_ms, **plan.diagnostics())
 
-    def _tell(self, plan: PlannerStep) -> None:
+    def _report_goal(self, plan: PlannerStep) -> None:
         if self._handle is None:
             return
         if plan.feedback is not None:
