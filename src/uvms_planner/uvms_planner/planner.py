@@ -44,8 +44,8 @@ class _Plan:
 class MotionPlanner:
     """Plans vehicle pose (x, y, z, psi) and joints so that the end effector follows a goal.
 
-    At the tick t the segment [t + step, t + 2 step] is planned, so that planning never keeps the
-    loop waiting; the first tick t_0 gives the segment [t_0, t_0 + step] besides, at rest. Without
+    At the tick t the segment [t + step, t + 2 step] is planned, so that the loop never waits for
+    the planner; the first tick t_0 also gives the segment [t_0, t_0 + step], at rest. Without
     a goal the vehicle holds the pose of the first tick, level, and the joints theirs.
     """
 
@@ -92,7 +92,7 @@ class MotionPlanner:
         return PathFollower(self._solver, joined, knot.stamp, self._config.step_s)
 
     def cancel(self) -> None:
-        """Give the goal up and come to rest smoothly; without a goal nothing happens."""
+        """Abandon the goal and come to rest smoothly; without a goal nothing happens."""
         if self._goal is not None:
             self._end_goal(False, "cancelled")
 
@@ -156,7 +156,7 @@ class MotionPlanner:
         return samples
 
     def _along_path(self, plan: _Plan, goal: PathFollower) -> Samples | None:
-        """The path's next segment; None, the goal being given up, where it cannot be reached."""
+        """The path's next segment; None, with the goal aborted, where it cannot be reached."""
         begin = goal.elapsed(plan.knot.stamp)
         step = goal.plan(plan.knot, self._times)
         self._diagnostics = StepDiagnostics.of(self._config.method, self._solver, step)
@@ -214,6 +214,6 @@ def _unreachable(goal: PathFollower, step: FollowedStep, config: PlannerConfig) 
     time = goal.elapsed(step.knot.stamp)
     allowed = config.projection.position_tolerance_m
     return (
-        f"given up at t = {time:g} s: the nearest reachable point is {step.choice.distance:.4g} m"
+        f"aborted at t = {time:g} s: the nearest reachable point is {step.choice.distance:.4g} m"
         f" away, allowed {allowed:g} m"
     )
