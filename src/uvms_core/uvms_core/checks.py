@@ -122,9 +122,12 @@ def _is_good(value: Any, rule: Any, sizes: dict[str, int]) -> bool:
         return False
     if value.shape != rule.sizes and not _fits(value.shape, rule, sizes):
         return False
-    squared = np.vdot(value, value)
-    if rule.unit and value.ndim == 1:
-        return is_unit(squared)
+    if value.ndim == 1:
+        squared: float = value.dot(value)
+        if rule.unit:
+            return is_unit(squared)
+    else:
+        squared = float(np.vdot(value, value))
     return isfinite(squared) and not (rule.unit or rule.increasing)
 
 
