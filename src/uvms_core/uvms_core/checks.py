@@ -50,7 +50,7 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     kind: Any = type(signal)
     fields, sized = _fields(kind)
     if _MARK not in getattr(signal, "__dict__", ()):
-        sizes = {letter: len(each) for letter, each in names.items()}
+        sizes = {letter: len(each) for letter, each in names.items()} if names else {}
         for field, rule in fields:
             value = getattr(signal, field)
             if not _is_good(value, rule, sizes):
