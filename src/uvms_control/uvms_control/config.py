@@ -111,8 +111,8 @@ class ControlConfig(PluginConfig):
     law: str = Field(
         default="s_surface",
         description="control law: s_surface (eq. (22) and (19)), that of an installed package, or"
-        " a class as my_package.my_module:MyLaw; one that is not s_surface uses of this section"
-        " what it likes",
+        " a class as my_package.my_module:MyLaw; other laws may ignore the rest of this"
+        " section",
     )
     enabled: bool = Field(
         default=True,

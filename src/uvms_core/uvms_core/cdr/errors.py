@@ -1,4 +1,4 @@
-"""What can go wrong with message definitions and bytes."""
+"""Errors of message definitions and bytes."""
 
 from uvms_core.errors import UvmsError
 

@@ -13,7 +13,7 @@ Vector3 = tuple[float, float, float]
 
 
 class NoiseFloor(Config):
-    """Least measurement noise (std) that the filter believes: no sensor is perfect to it."""
+    """Lower bounds of the measurement noise (std) that the filter assumes."""
 
     attitude_deg: float = Field(0.001, gt=0.0, description="roll, pitch and heading, deg")
     velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
@@ -55,18 +55,18 @@ class NavigationConfig(PluginConfig):
         0.25,
         ge=0.0,
         le=10.0,
-        description="a sample that comes this much late is still taken, at its own stamp, s",
+        description="largest delay of a sample that is still used, at its own stamp, s",
     )
     gate_probability: float = Field(
         0.9999,
         gt=0.5,
         lt=1.0,
-        description="share of good measurements that the chi-square gate lets in",
+        description="share of good measurements that the chi-square gate accepts",
     )
     gate_timeout_s: float = Field(
         5.0,
         gt=0.0,
-        description="when a sensor has been refused for this long the filter doubts itself: it "
-        "widens its covariance and takes the sensor in, s",
+        description="after rejecting a sensor for this long, the filter widens its covariance and "
+        "accepts the sensor, s",
     )
     noise_floor: NoiseFloor = NoiseFloor()
