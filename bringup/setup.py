@@ -43,6 +43,7 @@ setup(
         ],
         "uvms.commands": [
             "added-mass = uvms_bringup.commands.added_mass:COMMAND",
+            "fields = uvms_bringup.commands.fields:COMMAND",
             "replay = uvms_bringup.commands.replay:COMMAND",
             "run = uvms_bringup.commands.run:COMMAND",
             "simulate = uvms_bringup.commands.simulate:COMMAND",

@@ -69,7 +69,7 @@ class Scenario(Config):
     def _names_a_folder(cls, name: str) -> str:
         if not re.fullmatch(r"\w[\w .+-]*", name):
             raise ValueError(
-                "it becomes a part of a folder's name: begin with a letter or digit, and go on with"
+                "it becomes part of a folder's name: start with a letter or digit, then use"
                 " letters, digits, spaces and the signs _ . + -"
             )
         return name

@@ -60,7 +60,7 @@ class Stopwatch:
 
 @dataclass(frozen=True)
 class Session:
-    """A run that is about to begin."""
+    """A run that is ready to start."""
 
     scenario: Scenario
     vehicle: Vehicle
@@ -82,7 +82,7 @@ class Session:
 
     def run_graph(self, pace: Pace, composed: bool) -> dict[str, Any]:
         """`uvms run`: returns the summary."""
-        from uvms_bringup.ros.run import run_graph  # ROS is wanted here only
+        from uvms_bringup.ros.run import run_graph  # only this needs ROS
 
         def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
             return run_graph(

@@ -92,8 +92,8 @@ PERIOD = "is not a multiple of"
         ),
         (
             ["--set", "scenario=../../x"],
-            f"{HOVER}scenario: Value error, it becomes a part of a folder's name: begin with a"
-            " letter or digit, and go on with letters, digits, spaces and the signs _ . + -"
+            f"{HOVER}scenario: Value error, it becomes part of a folder's name: start with a"
+            " letter or digit, then use letters, digits, spaces and the signs _ . + -"
             " (got '../../x')",
         ),
         (

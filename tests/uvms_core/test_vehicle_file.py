@@ -158,7 +158,7 @@ def test_unknown_override_lists_the_choices():
         (
             "arm.drag_coefficient.reynolds",
             [1.0, 3.0],
-            "arm.drag_coefficient: Value error, reynolds has 2 values, cd has 9; must be as many",
+            "arm.drag_coefficient: Value error, reynolds has 2 values, cd has 9; give one cd each",
         ),
         (
             "arm.links.0.cylinder",

@@ -65,7 +65,7 @@ class ProjectionConfig(Config):
         1e-3, ge=0, le=1.0, description="damping of the pseudo-inverse, in per-step ranges"
     )
     vehicle_share: float = Field(
-        0.5, gt=0, le=1e3, description="readiness of the vehicle to move against the joints'"
+        0.5, gt=0, le=1e3, description="how readily the vehicle moves, relative to the joints"
     )
 
 
@@ -78,7 +78,7 @@ class FitnessConfig(Config):
     )
 
     lookahead_s: float = Field(
-        6.0, ge=0, le=60.0, description="s, restoring wrench where the arm's motion leads in this"
+        6.0, ge=0, le=60.0, description="s, how far ahead the restoring wrench is judged"
     )
     smoothness_weight: float = Field(
         1.0, ge=0, description="N^2 (or N^2 m^2) for a change of rate at full acceleration"

@@ -19,7 +19,7 @@ class PathPhase(Config):
         (0.0, 0.0, 0.0), description="m, where it ends, from the start point, map_ned axes"
     )
     bulge_m: Vector3 = Field(
-        (0.0, 0.0, 0.0), description="m, offset of the half-way point from the straight line"
+        (0.0, 0.0, 0.0), description="m, offset of the halfway point from the straight line"
     )
 
 
@@ -31,7 +31,7 @@ class PathSpec(Config):
     )
     point_every_s: float = Field(1.0, gt=0, le=60.0, description="s between the goal's points")
     keep_orientation: bool = Field(
-        False, description="keep the orientation that the tool has at the start"
+        False, description="keep the tool's orientation of the start along the whole path"
     )
 
     @property

@@ -1,4 +1,4 @@
-"""Message definitions and CDR, the form in which messages travel and are logged, free of ROS."""
+"""Message definitions and CDR, the format of messages on the wire and in logs, without ROS."""
 
 from uvms_core.cdr.codec import Codec, codec
 from uvms_core.cdr.definitions import schema_text, type_hash

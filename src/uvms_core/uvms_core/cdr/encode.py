@@ -82,7 +82,7 @@ class _Encoder:
             return
         self.number("I", 4, f"len({name}) // {size}")
         self.flush()
-        # An empty sequence has no padding behind its length.
+        # An empty sequence has no padding after its length.
         padding = f"bytes((4 - len(b)) & {size - 1}) + " if size > 4 else ""
         self.source.line(f"if {name}: b += {padding}{name}")
         self.align.set(min(size, 4))

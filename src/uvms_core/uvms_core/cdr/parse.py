@@ -1,4 +1,4 @@
-"""Message definitions to fields."""
+"""Reads message definitions."""
 
 import re
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ PRIMITIVES: dict[str, tuple[str, int]] = {
 
 STRING = "string"
 SEQUENCE = -1
-"""Length of an array that carries its own."""
+"""Length of an array that is stored with its length."""
 
 _TYPE = re.compile(
     r"^(?P<type>[A-Za-z][\w/]*)(<=\d+)?(?P<array>\[(?P<bound><=)?(?P<count>\d*)\])?$"

@@ -14,14 +14,14 @@ from uvms_core.vehicle.thrusters import Thruster
 class Vehicle(Part):
     """Vehicle, arm, actuators, sensors and the water around them; mirrors the YAML file.
 
-    Made by `load_vehicle`, which puts values in the place of the file's shorthand words.
+    Made by `load_vehicle`, which replaces the file's keywords by values.
     """
 
     name: str = Field(min_length=1, description="name of the vehicle")
-    environment: Environment = Field(description="water, gravity, datum")
+    environment: Environment = Field(description="water, gravity and geographic datum")
     hull: Hull = Field(description="the vehicle without its arm")
-    thrusters: tuple[Thruster, ...] = Field(min_length=1, description="any number of them")
-    arm: Arm = Field(description="serial chain of revolute joints")
+    thrusters: tuple[Thruster, ...] = Field(min_length=1, description="thrusters, any number")
+    arm: Arm = Field(description="arm, a serial chain of revolute joints")
     sensors: Sensors = Field(description="rates, lever arms, noise")
     tether: Tether | None = Field(
         default=None,

@@ -78,7 +78,7 @@ def make_state(
     """State (13 + 2n + m,) with joint angles q (n,), rad, and m thrusters that are off.
 
     position (3,) m and unit quaternion (x, y, z, w) in the world, nu_r (6,) relative to the water,
-    body frame, q_dot (n,) rad/s; level and at rest where nothing is said.
+    body frame, q_dot (n,) rad/s; level and at rest by default.
     """
     rates = np.zeros(len(q)) if q_dot is None else q_dot
     return np.concatenate([position, quat, nu_r, q, rates, np.zeros(m)])
@@ -90,7 +90,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
 
     x (nx,) becomes the state at the end. Row k of states (steps+1, nx) is the state after k steps
     and row k of rates its derivative under these commands: thrust (m,) N, joint torque (n,) N m.
-    What `simulate` is made of. Raises ValueError for arrays that do not fit.
+    `simulate` is built on it. Raises ValueError for arrays that do not fit.
     """
     model, thrusters, current = system
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
@@ -113,7 +113,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
 
 @inner
 def _record(x, stage, states, rates, s):
-    """Rows s: the state and its derivative (slices would drag in numba's text formatting)."""
+    """Rows s: the state and its derivative (slices would compile numba's text formatting)."""
     for i in range(x.shape[0]):
         states[s, i] = x[i]
         rates[s, i] = stage[0, i]
@@ -123,7 +123,7 @@ def _record(x, stage, states, rates, s):
 def finish_step(
     model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
 ):
-    """Go on with x by one step; row 0 of stage holds its derivative."""
+    """Advance x by one step; row 0 of stage holds its derivative."""
     size = JOINTS + 2 * n + m
     for k in range(1, 4):
         part = step if k == 3 else 0.5 * step
@@ -191,7 +191,7 @@ def pose_rates(nu, a, b, c, d):
 
 @inner
 def _thruster_wrench(thrusters, x, first):
-    """Body wrench of the thrusters, whose thrust stands in x from `first` on."""
+    """Body wrench of the thrusters; their thrusts are in x from `first` on."""
     wrench = _scaled_row(thrusters, FIRST, x[first])
     for i in range(1, thrusters.shape[0]):
         wrench = plus(wrench, _scaled_row(thrusters, i, x[first + i]))

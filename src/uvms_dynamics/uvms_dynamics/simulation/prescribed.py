@@ -1,6 +1,6 @@
 """The floating vehicle under a prescribed motion of its arm: hybrid dynamics.
 
-The joints follow given q(t), q_dot(t), q_ddot(t), whatever torque that takes; the base is free:
+The joints follow given q(t), q_dot(t), q_ddot(t) with any torque that this takes; the base is free:
 
     nu_dot = M_bb(q)^-1 (tau - ID(nu_dot = 0, q_ddot)[:6]),
 
@@ -26,7 +26,7 @@ STATE = 13
 
 
 class PrescribedJoints(NamedTuple):
-    """The arm's motion over m steps: rows at the begin, the middle and the end of each step."""
+    """The arm's motion over m steps: rows at the beginning, the middle and the end of each step."""
 
     steps: Array  # (m,) s
     q: Array  # (2m+1, n) rad
