@@ -31,7 +31,7 @@ def chain(n: int, seed: int = SEED) -> Vehicle:
     data["hull"]["cg_m"] = [*rng.uniform(-0.01, 0.01, 2).tolist(), 0.012]
     arm["base"]["rpy_deg"] = rng.uniform(-180.0, 180.0, 3).tolist()
     arm["tool"]["position_m"] = [0.1, 0.0, 0.0]
-    arm["stowed_deg"] = [0.0] * n
+    arm["stowed_deg"], arm["postures_deg"] = [0.0] * n, {}
     arm["joints"] = [{**joint, **_joint(rng, x), "name": f"joint_{i}"} for i, x in _named(lengths)]
     arm["links"] = [{**_link(rng, x, density), "name": f"link_{i}"} for i, x in _named(lengths)]
     return vehicle_from_data(data, f"chain of {n} joints")

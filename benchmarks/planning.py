@@ -8,6 +8,7 @@ import numpy as np
 from uvms_bringup.scenario import load_scenario
 from uvms_core.signals import Array, JointStates, Odometry, Reference, to_nanoseconds
 from uvms_dynamics import build_model, coupling_wrench, restoring_wrench, rpy_to_quat
+from uvms_dynamics.simulation.plant.config import initial_joints
 from uvms_planner import MotionPlanner
 
 
@@ -31,7 +32,7 @@ def plan(method: str, seconds: float, clock: Callable[[], float] = lambda: 0.0) 
     vehicle, start = scenario.load_vehicle(), scenario.plant
     planner = MotionPlanner(vehicle, scenario.planner, scenario.seed)
     result = Planned(scenario.planner.step_s)
-    q = np.radians(start.initial_joints_deg)
+    q = initial_joints(vehicle, start)
     for index in range(round(seconds / result.step_s) + 4):
         stamp = to_nanoseconds(index * result.step_s)
         odometry = Odometry(

@@ -26,6 +26,7 @@ vehicle = load_vehicle(
             {"name": "lower", "mass_kg": 2.0, "cylinder": lower},
         ],
         "arm.stowed_deg": [0.0, 90.0],
+        "arm.postures_deg": {},
     }
 )
 model = build_model(vehicle)

@@ -4,18 +4,17 @@ import json
 import subprocess
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.summary import summarise
+from uvms_bringup.cast import Cast
 from uvms_bringup.errors import RunError
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
@@ -24,23 +23,25 @@ from uvms_bringup.simulate import simulate
 from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
+from uvms_core.yaml_text import dump_yaml
 
 Goal = PathGoal | JointGoal | None
+VEHICLE_FILE = "vehicle.yaml"
 Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
 
 
 class Stopwatch:
-    """Wall time of a run's two parts: until time goes, and from then on."""
+    """Wall time of a run's two parts: until simulated time starts, and from then on."""
 
     def __init__(self) -> None:
         self._made = time.perf_counter()
-        self._went: float | None = None
+        self._started: float | None = None
         self._stopped = self._made
 
-    def go(self) -> None:
-        """Time goes from the first call on."""
-        if self._went is None:
-            self._went = time.perf_counter()
+    def start(self) -> None:
+        """Simulated time starts with the first call."""
+        if self._started is None:
+            self._started = time.perf_counter()
 
     def stop(self) -> None:
         """The run is over."""
@@ -49,12 +50,12 @@ class Stopwatch:
     @property
     def start_up_s(self) -> float:
         """Set-up of the nodes, and compilation where kernels are not compiled yet."""
-        return (self._stopped if self._went is None else self._went) - self._made
+        return (self._stopped if self._started is None else self._started) - self._made
 
     @property
     def run_s(self) -> float:
-        """From the first moment that time goes to the end."""
-        return 0.0 if self._went is None else self._stopped - self._went
+        """From the start of simulated time to the end."""
+        return 0.0 if self._started is None else self._stopped - self._started
 
 
 @dataclass(frozen=True)
@@ -67,13 +68,14 @@ class Session:
     folder: Path
     pace: str
     command: str
+    cast: Cast = field(default_factory=Cast)
 
     def run_simulation(self) -> dict[str, Any]:
         """`uvms simulate`: returns the summary."""
 
         def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
             names = self.vehicle.joint_names, self.vehicle.thruster_names
-            writer = SignalWriter(log, *names)
+            writer = SignalWriter(log, *names, self.cast.namespace)
             return simulate(self.scenario, self.vehicle, self.goal, writer, progress)
 
         return self._record(run)
@@ -84,20 +86,28 @@ class Session:
 
         def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
             return run_graph(
-                self.scenario, self.goal, pace, composed, self.folder, log.write, progress
+                self.scenario,
+                self.vehicle,
+                self.goal,
+                pace,
+                self.cast,
+                composed,
+                self.folder,
+                log.write,
+                progress,
             )
 
         return self._record(run)
 
     def _record(self, run: Run) -> dict[str, Any]:
-        config = yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
+        config = effective_config(self.scenario)
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
         line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
         clock = Stopwatch()
 
         def progress(stamp: int, note: str) -> None:
-            clock.go()
+            clock.start()
             line.show(stamp, note)
 
         completed = False
@@ -125,7 +135,7 @@ class Session:
 
     def _describe(self, log: LogWriter, config: str) -> None:
         log.attach("config.yaml", config, "application/yaml")
-        log.attach("vehicle.yaml", dump_vehicle(self.vehicle), "application/yaml")
+        log.attach(VEHICLE_FILE, dump_vehicle(self.vehicle), "application/yaml")
         if isinstance(self.goal, PathGoal):
             log.attach("path.json", path_to_json(self.goal), "application/json")
         log.metadata(
@@ -149,13 +159,16 @@ class Session:
         return summary
 
 
-def prepare(scenario: Scenario, output: str | None, pace: str, command: str) -> Session:
+def prepare(
+    scenario: Scenario, output: str | None, pace: str, command: str, cast: Cast | None = None
+) -> Session:
     """Load the vehicle, make the goal and the run's folder.
 
     Raises:
         RunError: the folder cannot be made, or it holds another run already.
     """
     vehicle = scenario.load_vehicle()
+    scenario = scenario.for_vehicle(vehicle)
     goal = scenario.goal.build(vehicle, scenario.plant)
     folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
     if (folder / "run.mcap").exists():
@@ -164,12 +177,21 @@ def prepare(scenario: Scenario, output: str | None, pace: str, command: str) -> 
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise RunError(f"--output {folder}: {fault.strerror}") from fault
-    return Session(scenario, vehicle, goal, folder.resolve(), pace, command)
+    return Session(scenario, vehicle, goal, folder.resolve(), pace, command, cast or Cast())
+
+
+def effective_config(scenario: Scenario) -> str:
+    """The scenario as YAML that runs again with the `vehicle.yaml` beside it, wherever they are."""
+    own = scenario.model_copy(update={"vehicle": VEHICLE_FILE, "vehicle_overrides": {}})
+    changes = (f"{path}={value}" for path, value in scenario.vehicle_overrides.items())
+    origin = " with ".join(filter(None, (scenario.vehicle, ", ".join(changes))))
+    origin = " ".join(origin.split())  # a comment is one line
+    return f"# {VEHICLE_FILE}: {origin}\n{dump_yaml(own.model_dump(mode='json'))}"
 
 
 def vehicle_file(folder: Path, vehicle: Vehicle) -> Path:
     """Write the vehicle as the nodes of a run read it: with the scenario's overrides."""
-    path = folder / "vehicle.yaml"
+    path = folder / VEHICLE_FILE
     path.write_text(dump_vehicle(vehicle), encoding="utf-8")
     return path
 

@@ -1,7 +1,8 @@
-"""What must fit together before a run can start: periods, and the start with the vehicle."""
+"""Checks before a run starts: do the periods fit together, and does the start fit the vehicle?"""
 
 from uvms_bringup.errors import ScenarioError
 from uvms_core.errors import ConfigError
+from uvms_core.sensors import INERTIAL
 from uvms_core.signals import to_nanoseconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
@@ -9,15 +10,13 @@ from uvms_dynamics.simulation.plant.config import initial_joints
 from uvms_dynamics.simulation.plant.stability import check_step
 from uvms_planner import PlannerConfig
 
-SENSORS = ("imu", "dvl", "pressure", "gps")
-
 
 def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
-    """Check what vehicle, plant and planner only together can have wrong.
+    """Check vehicle, plant and planner against each other.
 
     Raises:
-        ScenarioError: a period is no multiple of the one that it must go by, the integration step
-            is unstable with the vehicle, or the joints cannot start where they should.
+        ScenarioError: a period is not a multiple of the one that it depends on, the integration
+            step is unstable with the vehicle, or the joints cannot start where the plant says.
     """
     _check_periods(vehicle, plant, planner)
     try:
@@ -30,7 +29,7 @@ def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) ->
 def _check_periods(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
     step = "plant.step_s", plant.step_s
     control = "plant.control_period_s", plant.control_period_s
-    rates = {name: getattr(vehicle.sensors, name).rate_hz for name in SENSORS}
+    rates = {name: sensor.rate_hz for name, sensor in vehicle.sensors.mounted.items()}
     sensors = {
         name: (f"the period of vehicle.sensors.{name}.rate_hz = {rate:g}", 1.0 / rate)
         for name, rate in rates.items()
@@ -38,9 +37,9 @@ def _check_periods(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig)
     for sensor in sensors.values():
         _check_multiple(*sensor, *step)
     _check_multiple(*control, *step)
-    # The plant stops at control ticks for its commands, and an IMU sample of the tick's own stamp
-    # is what sets the tick going through the graph.
-    _check_multiple(*control, *sensors["imu"])
+    # The plant waits for its commands at control ticks, and the IMU sample with the stamp of the
+    # tick is what triggers the nodes.
+    _check_multiple(*control, *sensors[INERTIAL.name])
     _check_multiple("planner.step_s", planner.step_s, *control)
 
 

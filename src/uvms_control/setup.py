@@ -34,6 +34,10 @@ setup(
             "controller = uvms_control.nodes.controller:ControllerNode",
             "thrust_allocator = uvms_control.nodes.thrust_allocator:ThrustAllocatorNode",
         ],
+        "uvms.controllers": ["s_surface = uvms_control.controller:Controller"],
+        "uvms.allocators": [
+            "weighted_least_squares = uvms_control.allocation:ThrustAllocator",
+        ],
         "uvms.kernels": ["uvms_control = uvms_control"],
     },
 )

@@ -32,6 +32,12 @@ setup(
             "plant = uvms_dynamics.nodes.plant:main",
         ],
         "uvms.nodes": ["plant = uvms_dynamics.nodes.plant:PlantNode"],
+        "uvms.sensors": [
+            "imu = uvms_dynamics.simulation.sensors.imu:ImuSensor",
+            "dvl = uvms_dynamics.simulation.sensors.dvl:DvlSensor",
+            "pressure = uvms_dynamics.simulation.sensors.pressure:PressureSensor",
+            "gps = uvms_dynamics.simulation.sensors.gps:GpsSensor",
+        ],
         "uvms.kernels": ["uvms_dynamics = uvms_dynamics.kernels"],
     },
 )

@@ -34,6 +34,14 @@ setup(
             "navigation = uvms_observer.nodes.navigation:NavigationNode",
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
         ],
+        "uvms.observers": ["momentum_residual = uvms_observer.disturbance:DisturbanceObserver"],
+        "uvms.navigation_filters": ["error_state_ekf = uvms_observer.navigation:NavigationFilter"],
+        "uvms.measurements": [
+            "imu = uvms_observer.navigation.measurements.imu:Gyrocompass",
+            "dvl = uvms_observer.navigation.measurements.dvl:DvlVelocity",
+            "pressure = uvms_observer.navigation.measurements.pressure:PressureDepth",
+            "gps = uvms_observer.navigation.measurements.gps:GpsPosition",
+        ],
         "uvms.kernels": ["uvms_observer = uvms_observer"],
     },
 )

@@ -31,6 +31,11 @@ setup(
         "uvms.nodes": [
             "motion_planner = uvms_planner.nodes.motion_planner:MotionPlannerNode",
         ],
+        "uvms.planners": [
+            "genetic = uvms_planner.methods.genetic:Genetic",
+            "least_norm = uvms_planner.methods.least_norm:LeastNorm",
+            "arm_only = uvms_planner.methods.arm_only:ArmOnly",
+        ],
         "uvms.kernels": ["uvms_planner = uvms_planner"],
     },
 )

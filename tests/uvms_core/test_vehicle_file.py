@@ -153,7 +153,7 @@ def test_unknown_override_lists_the_choices():
         (
             "arm.stowed_deg",
             [0.0, 0.0, 150.0, 0.0],
-            "arm: Value error, stowed_deg 150 of joint elbow is outside its limits 0 to 140",
+            "arm: Value error, stowed_deg: 150 of joint elbow is outside its limits 0 to 140",
         ),
         (
             "arm.drag_coefficient.reynolds",

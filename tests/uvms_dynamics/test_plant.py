@@ -125,7 +125,7 @@ def test_a_command_of_wrong_size_is_refused_and_nothing_happens():
     with pytest.raises(SignalError) as fault:
         plant.step(ThrusterCommand(0, np.zeros(3)), plant.safe_effort())
     assert str(fault.value) == (
-        "thruster_command: has shape (3,), needs (7,) for main, side_fore, side_aft,"
+        "thruster_command.thrust has shape (3,); it must have (7,) for main, side_fore, side_aft,"
         " vertical_fore_port, vertical_fore_starboard, vertical_aft_port, vertical_aft_starboard"
     )
     assert plant.stamp == 0
@@ -136,9 +136,7 @@ def test_a_command_that_is_not_finite_is_refused_and_nothing_happens():
     bad = JointCommand(0, np.array([0.0, np.nan, 0.0, np.inf]))
     with pytest.raises(SignalError) as fault:
         plant.step(plant.safe_thrust(), bad)
-    assert str(fault.value) == (
-        "joint_command: every value must be finite; got shoulder = nan N m, wrist = inf N m"
-    )
+    assert str(fault.value) == "joint_command.effort[shoulder] is nan; it must be finite"
     assert plant.stamp == 0
     run(plant, 1)
     assert plant.stamp == 50_000_000
@@ -179,7 +177,10 @@ def test_a_start_that_is_not_finite_is_named():
             {"step_s": 0.004, "control_period_s": 0.02},
             "sensors.imu.rate_hz: its period of 0.01 s must be a multiple of step_s = 0.004 s",
         ),
-        ({"initial_joints_deg": (1.0, 2.0)}, "initial_joints_deg: has 2 values for 4 joints"),
+        (
+            {"initial_joints_deg": (1.0, 2.0)},
+            "initial_joints_deg: has 2 values for 4 joints: swing, shoulder, elbow, wrist",
+        ),
         (
             {"step_s": 0.05},
             "step_s: 0.05 s is unstable with the stop_dissipation_s_rad of arm.joints.0 (swing): a"

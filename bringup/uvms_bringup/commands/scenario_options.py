@@ -13,6 +13,7 @@ if TYPE_CHECKING:
 def add_scenario_options(parser: ArgumentParser, note: str = "") -> None:
     """The scenario and how it is run; `note` follows the help of the graph's own options."""
     from uvms_bringup.locate import known_scenarios
+    from uvms_core import topics
 
     add = parser.add_argument
     scenarios = ", ".join(known_scenarios())
@@ -41,6 +42,23 @@ def add_scenario_options(parser: ArgumentParser, note: str = "") -> None:
         "(vehicle.hull.mass_kg=190); may be repeated",
     )
     add("--output", metavar="DIR", help="folder of the run (default: runs/SCENARIO-TIME)")
+    add("--namespace", default="", metavar="NAME", help="ROS namespace of all topics and nodes")
+    roles = ", ".join(topics.NODES)
+    add(
+        "--node",
+        action="append",
+        default=[],
+        metavar="ROLE=NODE",
+        help="your node in the place of ours, as controller=my_package.my_node:MyNode; ROLE is one"
+        f" of {roles}; may be repeated" + note,
+    )
+    add(
+        "--without",
+        action="append",
+        default=[],
+        metavar="ROLE",
+        help="leave this node to you: the run waits until you have started it" + note,
+    )
 
 
 def open_session(options: Namespace, pace: "Pace") -> "Session":
@@ -49,6 +67,7 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
     Raises:
         ScenarioError, VehicleFileError, RunError: as `load_scenario` and `prepare`.
     """
+    from uvms_bringup.cast import Cast
     from uvms_bringup.scenario import load_scenario
     from uvms_bringup.session import prepare
 
@@ -59,7 +78,8 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
         duration_s=options.duration,
         vehicle=options.vehicle,
     )
-    session = prepare(scenario, options.output, str(pace), options.command_line)
+    cast = Cast.parse(options.node, options.without, options.namespace)
+    session = prepare(scenario, options.output, str(pace), options.command_line, cast)
     print(f"{scenario.scenario}: {scenario.description}\nto {session.folder}", flush=True)
     return session
 

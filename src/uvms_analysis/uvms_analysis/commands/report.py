@@ -9,13 +9,21 @@ def add_arguments(parser: ArgumentParser) -> None:
     """Options of `uvms report`."""
     parser.add_argument("log", metavar="RUN.mcap", help="log of a run")
     parser.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
+    parser.add_argument(
+        "--picture",
+        metavar="FILE",
+        help="only draw the vehicle at work, in 3-D, to this file (png, jpg, pdf or svg)",
+    )
 
 
 def run(options: Namespace) -> int:
-    """Draw the figures, write the page and print where it is."""
-    from uvms_analysis.report import report
+    """Draw the figures and write the page, or draw the picture; print where it is."""
+    from uvms_analysis.report import draw_scene, report
 
-    print(report(options.log, options.output))
+    if options.picture is not None:
+        print(draw_scene(options.log, options.picture))
+    else:
+        print(report(options.log, options.output))
     return 0
 
 

@@ -13,8 +13,8 @@ from uvms_analysis.trials.outcome import Outcome, table
 from uvms_analysis.trials.score import AXES
 
 COLUMNS = 4
-LEAST_DEG = 3.0
-"""Height of an axis at least, so that noise does not look like motion."""
+MIN_SPAN_DEG = 3.0
+"""Least height of an axis, so that noise does not look like motion."""
 
 _LOOKS: dict[str, dict[str, Any]] = {
     "dynamic model": {"color": style.COLORS[0], "linewidth": 1.3, "zorder": 3},
@@ -54,7 +54,7 @@ def _trial(panel: Axes, each: Outcome, axis: int) -> None:
     shown = np.concatenate(
         [trial.tilt[trial.accepted, axis], each.predicted["dynamic model"].tilt[:, axis]]
     )
-    style.room(panel, shown, LEAST_DEG)
+    style.room(panel, shown, MIN_SPAN_DEG)
     panel.set_title(trial.name, fontsize=8)
     panel.margins(x=0.0)
 

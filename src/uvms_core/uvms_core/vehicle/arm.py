@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from uvms_core.errors import ConfigError
 from uvms_core.vehicle.parts import (
     AddedMass,
     Inertia,
@@ -13,6 +14,7 @@ from uvms_core.vehicle.parts import (
     unique_names,
     word,
 )
+from uvms_core.vehicle.postures import STOWED, AnglesDeg, check_limits, joint_angles_deg
 
 
 class Mounting(Part):
@@ -180,7 +182,14 @@ class Arm(Part):
     joints: tuple[Joint, ...] = Field(min_length=1, description="from the base to the tool")
     links: tuple[Link, ...] = Field(min_length=1, description="link i is moved by joint i")
     tool: Mounting = Field(description="tool in the last link's frame")
-    stowed_deg: tuple[float, ...] = Field(description="joint angles with the arm stowed, degrees")
+    stowed_deg: tuple[float, ...] = Field(
+        description="joint angles of the posture `stowed`, in which the vehicle is trimmed, degrees"
+    )
+    postures_deg: dict[str, AnglesDeg] = Field(
+        default_factory=dict,
+        description="further postures by name, such as `home`: one angle a joint, or angles by"
+        " joint name (other joints as in `stowed`), degrees",
+    )
     drag_coefficient: DragCoefficient = Field(
         description="across the axes of all drag cylinders, by the diameter's Reynolds number"
     )
@@ -198,10 +207,17 @@ class Arm(Part):
                 raise ValueError(f"{name} has {len(values)} entries for {count} joints")
         unique_names(self.joints, "joint")
         unique_names(self.links, "link")
-        for joint, angle in zip(self.joints, self.stowed_deg, strict=True):
-            if not joint.lower_deg <= angle <= joint.upper_deg:
-                raise ValueError(
-                    f"stowed_deg {angle:g} of joint {joint.name} is outside its limits"
-                    f" {joint.lower_deg:g} to {joint.upper_deg:g}"
-                )
+        return self
+
+    @model_validator(mode="after")
+    def _postures_are_possible(self) -> "Arm":
+        if STOWED in self.postures_deg:
+            raise ValueError(f"postures_deg.{STOWED}: give that posture as stowed_deg")
+        postures: dict[str, AnglesDeg] = {"stowed_deg": self.stowed_deg}
+        postures |= {f"postures_deg.{name}": each for name, each in self.postures_deg.items()}
+        for name, angles in postures.items():
+            try:
+                check_limits(self.joints, joint_angles_deg(self, angles))
+            except ConfigError as fault:
+                raise ValueError(f"{name}: {fault}") from fault
         return self

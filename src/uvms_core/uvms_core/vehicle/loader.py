@@ -4,15 +4,13 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from uvms_core.config import validated
 from uvms_core.errors import VehicleFileError
 from uvms_core.vehicle.expand import MissingShapeError, expand
 from uvms_core.vehicle.locate import REFERENCE, vehicle_path
 from uvms_core.vehicle.overrides import override
 from uvms_core.vehicle.vehicle import Vehicle
-from uvms_core.yaml_text import parse_yaml, read_yaml
+from uvms_core.yaml_text import dump_yaml, parse_yaml, read_yaml
 
 _LONGEST_VALUE = 40  # characters of an override that an error repeats
 
@@ -46,9 +44,7 @@ def vehicle_from_data(
 
 def dump_vehicle(vehicle: Vehicle) -> str:
     """The effective vehicle as YAML, every word worked out; loading it gives an equal vehicle."""
-    return yaml.safe_dump(
-        vehicle.model_dump(mode="json"), sort_keys=False, default_flow_style=None, width=100
-    )
+    return dump_yaml(vehicle.model_dump(mode="json"), default_flow_style=None, width=100)
 
 
 def vehicle_from_yaml(text: str, what: str = "vehicle") -> Vehicle:

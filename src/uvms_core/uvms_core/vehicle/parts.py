@@ -25,14 +25,10 @@ def word(*words: str) -> WrapValidator:
     def validate(value: Any, handler: Callable[[Any], Any]) -> Any:
         if not isinstance(value, str):
             return handler(value)
-        if value in words:
-            return value
-        try:  # YAML reads 1e-3 as text
-            float(value)
-        except ValueError:
+        if value not in words:
             allowed = " or ".join(repr(each) for each in words)
-            raise ValueError(f"must be a value or the word {allowed}") from None
-        return handler(value)
+            raise ValueError(f"must be a value or the word {allowed}")
+        return value
 
     return WrapValidator(validate)
 

@@ -42,6 +42,8 @@ CROSS_FLOW, AXIAL = np.int64(43), np.int64(44)  # first items of the drag coeffi
 # Fixtures, in row n + 1
 TOOL_ROTATION, TOOL_POSITION = np.int64(0), np.int64(9)  # in the last link's frame
 ADDED_MASS = np.int64(12)  # 21: of the hull alone, about the body origin, body axes
+TETHER_DEPTH = np.int64(33)  # reference depth; only the simulation reads these
+TETHER_WEIGHT, TETHER_MOMENT = np.int64(34), np.int64(35)  # 1 and 3, per metre of depth
 
 # Drag cylinders, in groups of eight: each of these numbers of all eight, then the next
 CENTER, AXIS = np.int64(0), np.int64(3)

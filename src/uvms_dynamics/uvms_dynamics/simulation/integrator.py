@@ -2,7 +2,8 @@
 
 State x (13 + 2n + m,): position (3,) and quaternion (4,) in the world, velocity nu_r (6,) relative
 to the water in the body frame, q (n,), q_dot (n,), thrust (m,). The current is constant and
-uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c.
+uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c. The
+wrench on the base is that of the thrusters and of the tether.
 """
 
 from collections.abc import Sequence
@@ -25,10 +26,12 @@ from uvms_dynamics.kernels.motion import (
 from uvms_dynamics.kernels.primitives import sqrt
 from uvms_dynamics.kernels.spatial import load6, plus, six, store6
 from uvms_dynamics.model.vehicle_table import Model, build_model
+from uvms_dynamics.simulation.tether import load_wrench, tether_load
 from uvms_dynamics.simulation.thrusters import Thrusters, build_thrusters, thrust_rate
 
 POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
+DEPTH = POSITION + 2
 
 
 class System(NamedTuple):
@@ -149,8 +152,10 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
         work[i, RATE] = rate
         work[i, TORQUE] = effort[i - 1] + passive_torque(model, i, angle, rate)
         out[k, JOINTS + i - 1] = rate
+    down = down_in_body(a, b, c, d)
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
-    nu_r_dot = accelerate(model, work, n, down_in_body(a, b, c, d), nu_r, wrench)
+    wrench = plus(wrench, load_wrench(tether_load(model, n, x[DEPTH]), down))
+    nu_r_dot = accelerate(model, work, n, down, nu_r, wrench)
     store6(out, k, VELOCITY, nu_r_dot)
     for i in range(1, n + 1):
         out[k, JOINTS + n + i - 1] = work[i, RATE]

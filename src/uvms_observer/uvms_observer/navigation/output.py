@@ -32,7 +32,7 @@ def _twist(
 ) -> tuple[Array, Array]:
     """Velocity nu (6,) of the body origin over ground and its covariance (6, 6), body frame.
 
-    The rate is the gyro's, so that its noise reads through, into the velocity by the lever.
+    The rate is the gyro's, so that its noise is part of the result, of the velocity by the lever.
     """
     R = quat_to_matrix(state.quaternion)
     arm = skew(lever)
