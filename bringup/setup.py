@@ -22,7 +22,6 @@ setup(
     install_requires=[
         "numpy>=1.26",
         "pydantic>=2.5",
-        "PyYAML>=6",
         "rich>=13",
         "uvms_analysis",
         "uvms_control",

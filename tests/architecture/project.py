@@ -27,6 +27,7 @@ DISTRIBUTIONS = {
     "annotated_types": "annotated-types",
     "mcap_ros2": "mcap-ros2-support",
     "pinocchio": "pin",
+    "pydantic_core": "pydantic",  # which pins it
     "ruamel": "ruamel.yaml",
     "yaml": "PyYAML",
 }

@@ -56,16 +56,6 @@ def test_the_command_line_is_there_at_once(words):
     assert loaded(command_line(words), OF_HELP) == []
 
 
-@pytest.mark.parametrize(
-    ("command", "allowed"),
-    [
-        ("run", set()),
-        ("simulate", set()),
-        ("replay", {"numpy"}),
-        ("report", set()),
-        ("validate", {"numpy", "yaml"}),
-        ("identify", {"numpy", "yaml"}),
-    ],
-)
-def test_the_help_of_a_command_is_light(command, allowed):
-    assert set(loaded(command_line([command, "--help"]), OF_HELP)) <= allowed
+@pytest.mark.parametrize("command", ["run", "simulate", "replay", "report", "validate", "identify"])
+def test_the_help_of_a_command_needs_no_kernels(command):
+    assert loaded(command_line([command, "--help"]), HEAVY) == []
