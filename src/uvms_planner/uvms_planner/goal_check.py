@@ -141,7 +141,8 @@ def go_along(model, problem, positions, rotations, lower, upper, frozen):
         distance, angle = project(model, problem, increment)
         if not within_tolerance(problem, distance, angle):
             return index, distance, angle
-        copy_into(problem.configuration, problem.configuration + increment)
+        for i in range(increment.shape[0]):
+            problem.configuration[i] += increment[i]
     return -1, 0.0, 0.0
 
 

@@ -12,9 +12,9 @@ differences.
 """
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import exact_inner
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -26,7 +26,7 @@ from uvms_dynamics.kernels.rotations import (
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
-@njit(cache=True)
+@exact_inner
 def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
     """Rotation vector (3,) rad, map_ned, from the expected to the measured attitude, and H."""
     R = quat_to_matrix(state.quaternion)
@@ -35,26 +35,40 @@ def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
     H = np.zeros((3, SIZE))
     for i in range(3):
         H[i, 6 + i] = 1.0
-    H[:, 15:18] = R
+        for k in range(3):
+            H[i, 15 + k] = R[i, k]
     return quat_to_rotation_vector(quat_multiply(measured, quat_conjugate(expected))), H
 
 
-@njit(cache=True)
+@exact_inner
 def velocity(state: NavigationState, lever: Array, rate: Array) -> tuple[Array, Array]:
     """Velocity that the DVL should read (3,) m/s, body axes, and H."""
     R = quat_to_matrix(state.quaternion)
-    arm = skew(lever)
-    motion = R.T @ state.velocity - arm @ (rate - state.gyro_bias)
+    arm, turned = skew(lever), R.T @ skew(state.velocity)
+    reading, swing = R.T @ state.velocity, arm @ body_rate(state, rate)
     scale = 1.0 + state.instrument_bias[0]
     H = np.zeros((3, SIZE))
-    H[:, 3:6] = scale * R.T
-    H[:, 6:9] = scale * (R.T @ skew(state.velocity))
-    H[:, 9:12] = scale * arm
-    H[:, 18] = motion
-    return scale * motion, H
+    for i in range(3):
+        motion = reading[i] - swing[i]
+        for k in range(3):
+            H[i, 3 + k] = scale * R[k, i]
+            H[i, 6 + k] = scale * turned[i, k]
+            H[i, 9 + k] = scale * arm[i, k]
+        H[i, 18] = motion
+        reading[i] = scale * motion
+    return reading, H
 
 
-@njit(cache=True)
+@exact_inner
+def body_rate(state: NavigationState, rate: Array) -> Array:
+    """The gyro's rate (3,) without its estimated bias."""
+    omega = np.empty(3)
+    for i in range(3):
+        omega[i] = rate[i] - state.gyro_bias[i]
+    return omega
+
+
+@exact_inner
 def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Depth that the pressure should show (1,) m, and H."""
     offset = quat_to_matrix(state.quaternion) @ lever
@@ -63,15 +77,19 @@ def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     H[0, 6] = offset[1]
     H[0, 7] = -offset[0]
     H[0, 19] = 1.0
-    return np.array([state.position[2] + offset[2] + state.instrument_bias[1]]), H
+    reading = np.empty(1)
+    reading[0] = state.position[2] + offset[2] + state.instrument_bias[1]
+    return reading, H
 
 
-@njit(cache=True)
+@exact_inner
 def position(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Position of the antenna (3,) m, map_ned, and H."""
     offset = quat_to_matrix(state.quaternion) @ lever
-    H = np.zeros((3, SIZE))
+    H, arm = np.zeros((3, SIZE)), skew(offset)
     for i in range(3):
         H[i, i] = 1.0
-    H[:, 6:9] = -skew(offset)
-    return state.position + offset, H
+        for k in range(3):
+            H[i, 6 + k] = -arm[i, k]
+        offset[i] += state.position[i]
+    return offset, H
