@@ -9,7 +9,6 @@ setup(
     version="0.1.0",
     description="Scenarios, bringup, in-process simulation, recording, replay and reports.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -32,12 +31,21 @@ setup(
         "uvms_observer",
         "uvms_planner",
     ],
-    extras_require={"panels": ["uvms_dynamics[panels]"]},
+    extras_require={
+        "panels": ["uvms_dynamics[panels]"],
+        "test": ["pytest", "uvms_bringup[panels]"],
+    },
     zip_safe=False,
     entry_points={
         "console_scripts": [
             "uvms = uvms_bringup.cli:main",
             "state_publisher = uvms_bringup.ros.state_publisher:main",
-        ]
+        ],
+        "uvms.commands": [
+            "added-mass = uvms_bringup.commands.added_mass:COMMAND",
+            "replay = uvms_bringup.commands.replay:COMMAND",
+            "run = uvms_bringup.commands.run:COMMAND",
+            "simulate = uvms_bringup.commands.simulate:COMMAND",
+        ],
     },
 )

@@ -1,7 +1,6 @@
-"""The command `uvms added-mass`: the added mass of a body, ready for the vehicle file."""
+"""The work of `uvms added-mass`: solve for the added mass of a body, and report on it."""
 
 import argparse
-import math
 import sys
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -26,76 +25,16 @@ from uvms_dynamics.panel_method import (
     shape_body,
     vehicle_body,
 )
-from uvms_dynamics.panel_method.bodies import FILE_ROW, MOST_HALVED, PANELS, SEA_WATER
+from uvms_dynamics.panel_method.bodies import FILE_ROW, SEA_WATER
 from uvms_dynamics.panel_method.panels import LONG, longest_edge, mean_edge
 from uvms_dynamics.panel_method.solids import WORDS
 from uvms_dynamics.panel_method.solver import memory_needed
 
-SHAPES = "  ".join(f"{word}:{sizes}" for word, sizes in WORDS.items())
-DESCRIPTION = f"""\
-6x6 added mass of a hull or link in unbounded water, by the panel method (capytaine).
-BODY is one of
-  a mesh file (.stl .obj .ply .off .glb .gdf ...): one closed surface in metres, normals outwards
-  a shape, its length along x, in metres: {SHAPES}
-  with --vehicle FILE: hull, or the name of a link, where the file has a shape for it
-The output is YAML: the entry `added_mass` of the vehicle file, with comments on how sure it is."""
-EXAMPLES = """examples:
-  uvms added-mass spheroid:2.4,0.38
-  uvms added-mass hull.stl --scale 0.001 --rpy 180,0,0 > added_mass.yaml    mm, z upwards
-  uvms added-mass link.obj --about=-0.23,0,0 --density 1000
-  uvms added-mass forearm --vehicle my_auv.yaml
-
-More: docs/added-mass.md"""
 TERMS = ("X", "Y", "Z", "K", "M", "N")
 
 
-def add_command(commands: Any) -> None:
-    """Put `added-mass` among the commands."""
-    command = commands.add_parser(
-        "added-mass",
-        help="added mass of a mesh or shape, ready for the vehicle file",
-        description=DESCRIPTION,
-        epilog=EXAMPLES,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-    )
-    command.set_defaults(do=added_mass)
-    add = command.add_argument
-    add("body", metavar="BODY", help="mesh file, shape:SIZES, or part of --vehicle")
-    add("--vehicle", metavar="FILE", help="name or file of a vehicle whose hull or link BODY names")
-    add("--scale", type=float, metavar="M", help="unit of the mesh file in metres (mm: 0.001)")
-    add("--flip", action="store_true", help="turn the mesh's normals round")
-    add(
-        "--about",
-        type=_vector,
-        metavar="X,Y,Z",
-        help="origin of the body frame in the file's frame, m, after scaling (default 0,0,0);"
-        " write --about=-0.1,0,0 where the first is negative",
-    )
-    add(
-        "--rpy",
-        type=_vector,
-        metavar="R,P,Y",
-        help="attitude of the file's axes in the body frame, degrees (default 0,0,0; 180,0,0 turns"
-        " forward-port-up into forward-starboard-down)",
-    )
-    add(
-        "--density",
-        type=float,
-        metavar="RHO",
-        help=f"of the water, kg/m^3 (default: the vehicle's, or {SEA_WATER:g})",
-    )
-    add(
-        "--panels",
-        type=int,
-        default=PANELS,
-        metavar="N",
-        help=f"of the finest surface (default {PANELS}; a mesh file that has more than a quarter"
-        f" of it is halved up to {MOST_HALVED}, or to N if that is more)",
-    )
-
-
 def added_mass(options: argparse.Namespace) -> int:
-    """`uvms added-mass`."""
+    """Solve and print; the options are those of `commands/added_mass.py`."""
     body = _body(options)
     with _progress(body) as progress:
         found = estimate(body.levels, body.density, progress)
@@ -132,16 +71,6 @@ def _body(options: argparse.Namespace) -> Body:
 def _refuse(given: dict[str, bool], what: str) -> None:
     if idle := [option for option, is_given in given.items() if is_given]:
         raise PanelMethodError(f"{' and '.join(idle)}: not for {what}")
-
-
-def _vector(text: str) -> Array:
-    try:
-        numbers = [float(part) for part in text.split(",")]
-    except ValueError:
-        numbers = []
-    if len(numbers) != 3 or not all(map(math.isfinite, numbers)):
-        raise argparse.ArgumentTypeError(f"{text!r} must be three numbers, as in 0.1,0,0")
-    return np.array(numbers)
 
 
 def _report(body: Body, found: AddedMassEstimate) -> list[str]:

@@ -1,20 +1,18 @@
-"""The command `uvms`: run, simulate, replay, report."""
+"""The command `uvms`: assembles the commands that the installed packages bring.
+
+A command is an entry point of the group `uvms.commands` (`uvms_core.command.Command`).
+"""
 
 import argparse
-import json
 import shlex
 import sys
 from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
-from uvms_analysis.trials.commands import add_commands as add_trial_commands
-from uvms_bringup import added_mass
-from uvms_bringup.pace import Pace
-from uvms_bringup.scenario import known_scenarios, load_scenario
-from uvms_bringup.session import Session, prepare
-from uvms_core import topics
-from uvms_core.errors import UvmsError
+from uvms_core import registry
+from uvms_core.command import Command
+from uvms_core.errors import PluginError, UvmsError
 
 EXAMPLES = """examples:
   uvms run manipulation                        the 900 s manipulation on six ROS 2 nodes
@@ -25,15 +23,17 @@ EXAMPLES = """examples:
   uvms added-mass spheroid:2.4,0.38            added mass of a shape or of a mesh file
   uvms validate bringup/data/pool_trials --vehicle bluerov2_alpha5
 """
+FIRST = ("run", "simulate", "replay", "report")
+"""Listed first in the help, in the order of their use; the others follow by name."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run the command line; errors of ours end in one clear message and code 2."""
+    """Run the command line; the project's own errors end in one clear message and code 2."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
-    options = parser().parse_args(arguments)
-    options.command = "uvms " + shlex.join(arguments)
     try:
-        return options.do(options)
+        options = parser(_chosen(arguments)).parse_args(arguments)
+        options.command_line = "uvms " + shlex.join(arguments)
+        return options.run_command(options)
     except (UvmsError, OSError) as fault:  # OSError: the disk is full, a folder may not be written
         print(f"error: {fault}", file=sys.stderr)
         return 2
@@ -42,8 +42,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
-def parser() -> argparse.ArgumentParser:
-    """All commands and options."""
+def parser(chosen: str | None = None) -> argparse.ArgumentParser:
+    """The parser of one command, or the one that lists them all.
+
+    Only the chosen command is imported, so that no command waits for the imports of the others.
+
+    Raises:
+        PluginError: the chosen command cannot be imported.
+    """
     top = argparse.ArgumentParser(
         prog="uvms",
         description="An underwater vehicle with an arm: run it, simulate it, work on its logs.",
@@ -52,136 +58,40 @@ def parser() -> argparse.ArgumentParser:
     )
     top.add_argument("--version", action="version", version=f"uvms {version('uvms_bringup')}")
     commands = top.add_subparsers(required=True, metavar="COMMAND")
-    for name, action, text in (
-        ("run", run, "run a scenario on the ROS 2 node graph, recorded to MCAP"),
-        ("simulate", simulate, "run a scenario in one process without ROS, logged alike"),
-    ):
-        _add_run(commands, name, action, text)
-    _add_replay(commands)
-    _add_report(commands)
-    added_mass.add_command(commands)
-    add_trial_commands(commands)
+    if chosen is not None:
+        _add(commands, chosen, registry.load(registry.COMMANDS, chosen))
+        return top
+    for name in _listed():
+        commands.add_parser(name, help=_help(name))
     return top
 
 
-def _add_run(commands: Any, name: str, action: Any, text: str) -> None:
-    scenarios = ", ".join(known_scenarios())
-    beside = "" if action is run else " (for `uvms run`; has no effect here)"
-    command = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
-    command.set_defaults(do=action)
-    add = command.add_argument
-    add("scenario", metavar="SCENARIO", help=f"{scenarios}, or a YAML file of your own")
-    add("--seed", type=int, metavar="N", help="seed of all random numbers (default: scenario's)")
-    add("--duration", type=float, metavar="S", help="simulated seconds (default: scenario's)")
-    add(
-        "--pace",
-        default="lockstep",
-        metavar="PACE",
-        help="lockstep: repeatable, as fast as the machine (default); realtime or realtime:FACTOR: "
-        "by the clock on the wall" + beside,
+def _chosen(arguments: Sequence[str]) -> str | None:
+    """The command that the arguments begin with, if there is one of that name."""
+    word = arguments[0] if arguments else ""
+    return word if word in registry.names(registry.COMMANDS) else None
+
+
+def _listed() -> list[str]:
+    names = registry.names(registry.COMMANDS)
+    return sorted(
+        names, key=lambda name: (FIRST.index(name) if name in FIRST else len(FIRST), name)
     )
-    add(
-        "--composed",
-        action="store_true",
-        help="all nodes in one process: several times faster" + beside,
-    )
-    add("--vehicle", metavar="FILE", help="vehicle file (default: scenario's)")
-    add(
-        "--set",
-        action="append",
-        default=[],
-        metavar="PATH=VALUE",
-        help="change a value of the scenario (control.observer=false) or of the vehicle file "
-        "(vehicle.hull.mass_kg=190); may be repeated",
-    )
-    add("--output", metavar="DIR", help="folder of the run (default: runs/SCENARIO-TIME)")
 
 
-def _add_replay(commands: Any) -> None:
-    text = "publish a log again with /clock, or feed one node with its recorded inputs"
-    command = commands.add_parser("replay", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    command.set_defaults(do=replay)
-    add = command.add_argument
-    add("log", metavar="RUN.mcap", help="log of a run")
-    add(
-        "--into",
-        metavar="NODE",
-        help="start this node, feed it and compare what it answers with the log: "
-        + ", ".join(topics.NODES),
-    )
-    add(
-        "--rate",
-        type=float,
-        default=None,
-        metavar="FACTOR",
-        help="speed against real time (default 1; with --into as fast as the node answers)",
-    )
-    add("--output", metavar="DIR", help="folder for what --into records (default: beside the log)")
+def _help(name: str) -> str:
+    """A command that cannot be imported says so in its line, and does not spoil the others."""
+    try:
+        return registry.load(registry.COMMANDS, name).help
+    except PluginError as fault:
+        return f"(not available: {fault})"
 
 
-def _add_report(commands: Any) -> None:
-    text = "figures and an HTML page about a run"
-    command = commands.add_parser("report", help=text, description=f"{text[0].upper()}{text[1:]}.")
-    command.set_defaults(do=report)
-    command.add_argument("log", metavar="RUN.mcap", help="log of a run")
-    command.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
-
-
-def _session(options: argparse.Namespace, pace: Pace) -> Session:
-    scenario = load_scenario(
-        options.scenario,
-        options.set,
-        seed=options.seed,
-        duration_s=options.duration,
-        vehicle=options.vehicle,
-    )
-    session = prepare(scenario, options.output, str(pace), options.command)
-    print(f"{scenario.scenario}: {scenario.description}\nto {session.folder}", flush=True)
-    return session
-
-
-def run(options: argparse.Namespace) -> int:
-    """`uvms run`."""
-    pace = Pace.parse(options.pace)
-    session = _session(options, pace)
-    return _tell(session, session.run_graph(pace, options.composed))
-
-
-def simulate(options: argparse.Namespace) -> int:
-    """`uvms simulate`: takes the options of `uvms run`, and says which have no effect."""
-    lockstep, asked = Pace(), Pace.parse(options.pace)
-    given = {f"--pace {asked}": asked != lockstep, "--composed": options.composed}
-    if idle := [name for name, is_given in given.items() if is_given]:
-        print(
-            f"note: {' and '.join(idle)}: no effect on `uvms simulate`, which always runs in one"
-            " process, as fast as the machine; `uvms run` heeds it",
-            file=sys.stderr,
-        )
-    session = _session(options, lockstep)
-    return _tell(session, session.run_simulation())
-
-
-def replay(options: argparse.Namespace) -> int:
-    """`uvms replay`."""
-    from uvms_bringup.ros.replay import replay as play  # ROS is wanted here only
-
-    return play(options.log, into=options.into, rate=options.rate, output=options.output)
-
-
-def report(options: argparse.Namespace) -> int:
-    """`uvms report`."""
-    from uvms_analysis.report import report as make  # matplotlib takes its time
-
-    page = make(options.log, options.output)
-    print(page)
-    return 0
-
-
-def _tell(session: Session, summary: dict[str, Any]) -> int:
-    print(json.dumps(summary, indent=2))
-    log = session.folder / "run.mcap"
-    print(f"log: {log}\nfigures: {sys.argv[0]} report {log}")
-    return 0 if summary["completed"] else 1
+def _add(commands: Any, name: str, command: Command) -> None:
+    text = command.help
+    own = commands.add_parser(name, help=text, description=f"{text[0].upper()}{text[1:]}.")
+    own.set_defaults(run_command=command.run)
+    command.add_arguments(own)
 
 
 if __name__ == "__main__":

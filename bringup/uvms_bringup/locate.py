@@ -21,6 +21,11 @@ def scenario_folder() -> Path:
     raise ScenarioError(f"the project's scenarios were not found; looked for\n{places}")
 
 
+def known_scenarios() -> dict[str, Path]:
+    """Scenarios that come with the project, by name."""
+    return {path.stem: path for path in sorted(scenario_folder().glob("*.yaml"))}
+
+
 def _candidates() -> Iterator[Path]:
     yield Path(__file__).resolve().parents[1] / _CONFIG
     for prefix in filter(None, os.environ.get("AMENT_PREFIX_PATH", "").split(os.pathsep)):

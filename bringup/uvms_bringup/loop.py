@@ -1,26 +1,30 @@
-"""The closed loop in one process, without ROS: the nodes' own core classes in the graph's order."""
+"""The closed loop in one process, without ROS: the nodes' own parts in the graph's order."""
 
 import time
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from uvms_bringup.scenario import Scenario
-from uvms_control import Controller, ThrustAllocator
+from uvms_control.parts import AllocatorPart, ControllerPart
+from uvms_core import topics
+from uvms_core.part import InProcess, Output, Part
 from uvms_core.signals import (
     Allocation,
     DisturbanceBudget,
     JointCommand,
     Odometry,
-    Reference,
     ThrusterCommand,
     Wrench,
     to_nanoseconds,
 )
-from uvms_core.tick_gate import Covering
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics.simulation import Plant
-from uvms_dynamics.simulation.plant import PlantTruth, SensorFrame
-from uvms_observer import DisturbanceObserver, NavigationFilter
+from uvms_dynamics.simulation import Plant, PlantTruth, SensorFrame
+from uvms_dynamics.simulation.publication import plant_outputs
+from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
+from uvms_observer.parts import NavigationPart, ObserverPart
 from uvms_planner import MotionPlanner, PlannerStep
+from uvms_planner.part import PlannerPart
 
 
 @dataclass(frozen=True)
@@ -30,16 +34,60 @@ class LoopTick:
     stamp: int
     sensors: SensorFrame
     truth: PlantTruth
-    odometry: Odometry
-    budget: DisturbanceBudget
-    disturbance: Wrench
-    plan: PlannerStep | None
-    plan_ms: float  # wall time of the planner's step
-    reference: Reference
-    wrench: Wrench
-    joint_command: JointCommand
-    thruster_command: ThrusterCommand
-    allocation: Allocation
+    outputs: list[Output]  # in the order of publication
+    step_ms: Mapping[str, float]  # wall time of each part's step, by role
+    plan: PlannerStep | None  # where this tick is one of the planner's
+
+    def newest(self, topic: topics.Topic) -> Any:
+        """The last signal of this tick on a topic; None if there was none."""
+        return next((s for t, s in reversed(self.outputs) if t is topic), None)
+
+    @property
+    def odometry(self) -> Odometry:
+        """Estimated pose and velocity."""
+        return self.newest(topics.ODOMETRY)
+
+    @property
+    def budget(self) -> DisturbanceBudget:
+        """Observed disturbance in its parts."""
+        return self.newest(topics.DISTURBANCE_BUDGET)
+
+    @property
+    def disturbance(self) -> Wrench:
+        """Observed disturbance as it is fed forward."""
+        return self.newest(topics.DISTURBANCE)
+
+    @property
+    def wrench(self) -> Wrench:
+        """Commanded wrench."""
+        return self.newest(topics.WRENCH_COMMAND)
+
+    @property
+    def joint_command(self) -> JointCommand:
+        """Commanded joint torques."""
+        return self.newest(topics.JOINT_COMMAND)
+
+    @property
+    def thruster_command(self) -> ThrusterCommand:
+        """Commanded thrusts."""
+        return self.newest(topics.THRUSTER_COMMAND)
+
+    @property
+    def allocation(self) -> Allocation:
+        """Thrusts, achieved wrench and residual."""
+        return self.newest(topics.ALLOCATION)
+
+
+def make_parts(scenario: Scenario, vehicle: Vehicle) -> dict[str, Part]:
+    """The parts of a scenario's loop besides the plant, by role."""
+    period = to_nanoseconds(scenario.plant.control_period_s)
+    return {
+        "navigation": NavigationPart(vehicle, scenario.navigation, period),
+        "motion_planner": PlannerPart(vehicle, scenario.planner, scenario.seed),
+        "disturbance_observer": ObserverPart(vehicle, scenario.observer, period),
+        "controller": ControllerPart(vehicle, scenario.control),
+        "thrust_allocator": AllocatorPart(vehicle, scenario.allocation),
+    }
 
 
 class Loop:
@@ -47,44 +95,30 @@ class Loop:
 
     def __init__(self, scenario: Scenario, vehicle: Vehicle) -> None:
         self.plant = Plant(vehicle, scenario.plant, scenario.seed)
-        self.navigation = NavigationFilter(vehicle, scenario.navigation)
-        self.observer = DisturbanceObserver(vehicle, scenario.observer)
-        self.planner = MotionPlanner(vehicle, scenario.planner, scenario.seed)
-        self.controller = Controller(vehicle, scenario.control)
-        self.allocator = ThrustAllocator(vehicle, scenario.allocation)
-        self._planner_step = to_nanoseconds(scenario.planner.step_s)
-        self._references = Covering()
-        self._achieved: Wrench | None = None
+        self.parts = make_parts(scenario, vehicle)
+        self._process = InProcess(self.parts)
+        self._sensor_topics = in_order_of_publication(vehicle)
+
+    @property
+    def planner(self) -> MotionPlanner:
+        """Takes goals."""
+        return self.parts["motion_planner"].planner  # type: ignore[attr-defined]
 
     def tick(self) -> LoopTick:
         """Everything that the graph computes at the plant's present stamp."""
         stamp, sensors, truth = self.plant.stamp, self.plant.sense(), self.plant.truth()
-        odometry = self.navigation.step(
-            stamp, sensors.imu, sensors.dvl, sensors.pressure, sensors.gps
-        )
+        outputs = list(plant_outputs(stamp, sensors, truth, self._sensor_topics))
+        for topic, signal in outputs[1:]:  # the clock is a stamp, not a signal
+            self._process.deliver(topic, signal)
+        step_ms: dict[str, float] = {}
         began = time.perf_counter()
-        plan = self._plan(stamp, odometry, sensors)
-        plan_ms = 1e3 * (time.perf_counter() - began)
-        budget, disturbance = self.observer.step(odometry, sensors.joints, self._achieved)
-        reference = self._references.take(stamp)
-        wrench, joint_command = self.controller.step(
-            odometry, sensors.joints, disturbance, reference
-        )
-        thruster_command, allocation = self.allocator.step(wrench)
-        self._achieved = Wrench(stamp, allocation.achieved)
-        return LoopTick(
-            stamp, sensors, truth, odometry, budget, disturbance, plan, plan_ms, reference,
-            wrench, joint_command, thruster_command, allocation,
-        )  # fmt: skip
+        for role, own in self._process.tick(stamp):
+            ended = time.perf_counter()
+            step_ms[role], began = 1e3 * (ended - began), ended
+            outputs += own
+        plan = self.parts["motion_planner"].plan if "motion_planner" in step_ms else None  # type: ignore[attr-defined]
+        return LoopTick(stamp, sensors, truth, outputs, step_ms, plan)
 
     def advance(self, tick: LoopTick) -> None:
         """Let the plant move to its next tick under the commands of this one."""
         self.plant.step(tick.thruster_command, tick.joint_command)
-
-    def _plan(self, stamp: int, odometry: Odometry, sensors: SensorFrame) -> PlannerStep | None:
-        if stamp % self._planner_step:
-            return None
-        plan = self.planner.step(stamp, odometry, sensors.joints)
-        for reference in plan.references:
-            self._references.push(reference.stamp, reference)
-        return plan

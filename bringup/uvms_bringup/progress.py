@@ -2,11 +2,12 @@
 
 import sys
 import time
-
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+from typing import TYPE_CHECKING
 
 from uvms_core.signals import to_seconds
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
 
 REFRESH_S = 0.2
 LINE_S = 5.0
@@ -54,7 +55,10 @@ class ProgressLine:
         return f"{to_seconds(stamp - self._began[1]) / max(elapsed, 1e-9):5.1f}x real time"
 
 
-def _bar() -> Progress:
+def _bar() -> "Progress":
+    from rich.console import Console  # only a terminal needs it
+    from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
+
     return Progress(
         TextColumn("{task.completed:6.1f} of {task.total:.0f} s"),
         BarColumn(),

@@ -9,10 +9,12 @@ import numpy as np
 from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from uvms_bringup.errors import ScenarioError
-from uvms_bringup.locate import scenario_folder
+from uvms_bringup.locate import known_scenarios
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
+from uvms_core.errors import UvmsError
+from uvms_core.plugin import PluginConfig
 from uvms_core.signals import Array, JointGoal, PathGoal
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
@@ -127,6 +129,15 @@ class Scenario(Config):
             )
         return name
 
+    @field_validator("navigation", "observer", "planner", "control", "allocation")
+    @classmethod
+    def _has_its_part(cls, own: PluginConfig) -> PluginConfig:
+        """Find the part that is chosen, with all its parameters, before anything starts."""
+        try:
+            return own.resolved()
+        except UvmsError as fault:
+            raise ValueError(str(fault)) from fault
+
     @field_validator("navigation")
     @classmethod
     def _begins_at_the_plant(cls, own: NavigationConfig, info: ValidationInfo) -> NavigationConfig:
@@ -157,11 +168,6 @@ def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, 
         initial_joints(vehicle, plant),
     )
     return position, matrix_to_quat(R_world_tool)
-
-
-def known_scenarios() -> dict[str, Path]:
-    """Scenarios that come with the project, by name."""
-    return {path.stem: path for path in sorted(scenario_folder().glob("*.yaml"))}
 
 
 def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Scenario:

@@ -4,7 +4,7 @@ import json
 import subprocess
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timezone
 from importlib.metadata import version
 from pathlib import Path
@@ -16,6 +16,7 @@ from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.summary import summarise
+from uvms_bringup.cast import Cast
 from uvms_bringup.errors import RunError
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
@@ -30,17 +31,17 @@ Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
 
 
 class Stopwatch:
-    """Wall time of a run's two parts: until time goes, and from then on."""
+    """Wall time of a run's two parts: until simulated time starts, and from then on."""
 
     def __init__(self) -> None:
         self._made = time.perf_counter()
-        self._went: float | None = None
+        self._started: float | None = None
         self._stopped = self._made
 
-    def go(self) -> None:
-        """Time goes from the first call on."""
-        if self._went is None:
-            self._went = time.perf_counter()
+    def start(self) -> None:
+        """Simulated time starts with the first call."""
+        if self._started is None:
+            self._started = time.perf_counter()
 
     def stop(self) -> None:
         """The run is over."""
@@ -49,12 +50,12 @@ class Stopwatch:
     @property
     def start_up_s(self) -> float:
         """Set-up of the nodes, and compilation where kernels are not compiled yet."""
-        return (self._stopped if self._went is None else self._went) - self._made
+        return (self._stopped if self._started is None else self._started) - self._made
 
     @property
     def run_s(self) -> float:
-        """From the first moment that time goes to the end."""
-        return 0.0 if self._went is None else self._stopped - self._went
+        """From the start of simulated time to the end."""
+        return 0.0 if self._started is None else self._stopped - self._started
 
 
 @dataclass(frozen=True)
@@ -67,13 +68,14 @@ class Session:
     folder: Path
     pace: str
     command: str
+    cast: Cast = field(default_factory=Cast)
 
     def run_simulation(self) -> dict[str, Any]:
         """`uvms simulate`: returns the summary."""
 
         def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
             names = self.vehicle.joint_names, self.vehicle.thruster_names
-            writer = SignalWriter(log, *names)
+            writer = SignalWriter(log, *names, self.cast.namespace)
             return simulate(self.scenario, self.vehicle, self.goal, writer, progress)
 
         return self._record(run)
@@ -84,7 +86,15 @@ class Session:
 
         def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
             return run_graph(
-                self.scenario, self.goal, pace, composed, self.folder, log.write, progress
+                self.scenario,
+                self.vehicle,
+                self.goal,
+                pace,
+                self.cast,
+                composed,
+                self.folder,
+                log.write,
+                progress,
             )
 
         return self._record(run)
@@ -97,7 +107,7 @@ class Session:
         clock = Stopwatch()
 
         def progress(stamp: int, note: str) -> None:
-            clock.go()
+            clock.start()
             line.show(stamp, note)
 
         completed = False
@@ -149,7 +159,9 @@ class Session:
         return summary
 
 
-def prepare(scenario: Scenario, output: str | None, pace: str, command: str) -> Session:
+def prepare(
+    scenario: Scenario, output: str | None, pace: str, command: str, cast: Cast | None = None
+) -> Session:
     """Load the vehicle, make the goal and the run's folder.
 
     Raises:
@@ -164,7 +176,7 @@ def prepare(scenario: Scenario, output: str | None, pace: str, command: str) -> 
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise RunError(f"--output {folder}: {fault.strerror}") from fault
-    return Session(scenario, vehicle, goal, folder.resolve(), pace, command)
+    return Session(scenario, vehicle, goal, folder.resolve(), pace, command, cast or Cast())
 
 
 def vehicle_file(folder: Path, vehicle: Vehicle) -> Path:

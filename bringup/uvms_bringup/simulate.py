@@ -8,10 +8,10 @@ from uvms_bringup.scenario import Scenario
 from uvms_core import diagnostics, topics
 from uvms_core.description import StateFrames, description_message, static_message
 from uvms_core.diagnostics import Status
-from uvms_core.signals import JointGoal, PathGoal, Wrench, to_nanoseconds
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle
-from uvms_planner import PlannerStep
 
+PLANNER = "motion_planner"
 Progress = Callable[[int, str], None]
 
 
@@ -64,35 +64,9 @@ def write_description(log: SignalWriter, vehicle: Vehicle) -> None:
 
 def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
     """Every message that the graph publishes in this tick."""
-    sensors, truth = tick.sensors, tick.truth
-    log.write(topics.CLOCK, tick.stamp)
-    log.write(topics.TRUE_ODOMETRY, truth.odometry)
-    log.write(topics.TRUE_JOINT_STATES, truth.joints)
-    log.write(topics.TRUE_DISTURBANCE, truth.disturbance)
-    log.write(topics.JOINT_STATES, sensors.joints)
-    for topic, samples in (
-        (topics.DVL, sensors.dvl),
-        (topics.PRESSURE, sensors.pressure),
-        (topics.GPS, sensors.gps),
-        (topics.IMU, sensors.imu),
-    ):
-        for sample in samples:
-            log.write(topic, sample)
-    log.write(topics.ODOMETRY, tick.odometry)
-    log.write_plain(topics.TF, frames.message(tick.odometry, sensors.joints), tick.stamp)
-    log.write(topics.DISTURBANCE, tick.disturbance)
-    log.write(topics.DISTURBANCE_BUDGET, tick.budget)
-    log.write(topics.WRENCH_COMMAND, tick.wrench)
-    log.write(topics.JOINT_COMMAND, tick.joint_command)
-    log.write(topics.THRUSTER_COMMAND, tick.thruster_command)
-    log.write(topics.WRENCH_ACHIEVED, Wrench(tick.stamp, tick.allocation.achieved))
-    log.write(topics.ALLOCATION, tick.allocation)
+    for topic, signal in tick.outputs:
+        log.write(topic, signal)
+    log.write_plain(topics.TF, frames.message(tick.odometry, tick.sensors.joints), tick.stamp)
     if tick.plan is not None:
-        _write_plan(log, tick.stamp, tick.plan, tick.plan_ms)
-
-
-def _write_plan(log: SignalWriter, stamp: int, plan: PlannerStep, step_ms: float) -> None:
-    for reference in plan.references:
-        log.write(topics.REFERENCE, reference)
-    values = {"step_ms": step_ms} | plan.diagnostics()
-    log.write(topics.DIAGNOSTICS, Status(stamp, "motion_planner", diagnostics.OK, "ok", values))
+        values = {"step_ms": tick.step_ms[PLANNER]} | tick.plan.diagnostics()
+        log.write(topics.DIAGNOSTICS, Status(tick.stamp, PLANNER, diagnostics.OK, "ok", values))

@@ -2,14 +2,13 @@
 
 from uvms_bringup.errors import ScenarioError
 from uvms_core.errors import ConfigError
+from uvms_core.sensors import INERTIAL
 from uvms_core.signals import to_nanoseconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.plant.config import initial_joints
 from uvms_dynamics.simulation.plant.stability import check_step
 from uvms_planner import PlannerConfig
-
-SENSORS = ("imu", "dvl", "pressure", "gps")
 
 
 def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
@@ -30,7 +29,7 @@ def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) ->
 def _check_periods(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
     step = "plant.step_s", plant.step_s
     control = "plant.control_period_s", plant.control_period_s
-    rates = {name: getattr(vehicle.sensors, name).rate_hz for name in SENSORS}
+    rates = {name: sensor.rate_hz for name, sensor in vehicle.sensors.mounted.items()}
     sensors = {
         name: (f"the period of vehicle.sensors.{name}.rate_hz = {rate:g}", 1.0 / rate)
         for name, rate in rates.items()
@@ -40,7 +39,7 @@ def _check_periods(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig)
     _check_multiple(*control, *step)
     # The plant stops at control ticks for its commands, and an IMU sample of the tick's own stamp
     # is what sets the tick going through the graph.
-    _check_multiple(*control, *sensors["imu"])
+    _check_multiple(*control, *sensors[INERTIAL.name])
     _check_multiple("planner.step_s", planner.step_s, *control)
 
 

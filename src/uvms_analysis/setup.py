@@ -7,7 +7,6 @@ setup(
     version="0.1.0",
     description="Logs, summaries and reports of runs, and trials of real vehicles.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -19,13 +18,20 @@ setup(
     install_requires=[
         "matplotlib>=3.8",
         "mcap>=1.2",
-        "mcap-ros2-support>=0.5",
         "numpy>=1.26",
         "PyYAML>=6",
         "scipy>=1.11",
         "uvms_core",
         "uvms_dynamics",
+        "zstandard",
     ],
+    extras_require={"test": ["mcap-ros2-support", "pytest", "rosbags"]},
     zip_safe=False,
-    entry_points={},
+    entry_points={
+        "uvms.commands": [
+            "identify = uvms_analysis.commands.identify:COMMAND",
+            "report = uvms_analysis.commands.report:COMMAND",
+            "validate = uvms_analysis.commands.validate:COMMAND",
+        ],
+    },
 )

@@ -7,7 +7,6 @@ setup(
     version="0.1.0",
     description="S-surface and dynamic controller and thrust allocation of an underwater vehicle-manipulator system.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -17,13 +16,13 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=[
-        "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
         "scipy>=1.11",
         "uvms_core",
         "uvms_dynamics",
     ],
+    extras_require={"test": ["daqp", "hypothesis", "pytest", "quadprog"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [
@@ -33,6 +32,10 @@ setup(
         "uvms.nodes": [
             "controller = uvms_control.nodes.controller:ControllerNode",
             "thrust_allocator = uvms_control.nodes.thrust_allocator:ThrustAllocatorNode",
+        ],
+        "uvms.controllers": ["s_surface = uvms_control.controller:Controller"],
+        "uvms.allocators": [
+            "weighted_least_squares = uvms_control.allocation:ThrustAllocator",
         ],
         "uvms.kernels": ["uvms_control = uvms_control"],
     },

@@ -7,7 +7,6 @@ setup(
     version="0.1.0",
     description="Dynamics with full hydrodynamics and the simulated plant of an underwater vehicle-manipulator system.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -17,18 +16,28 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=[
+        "llvmlite",  # the one that numba pins
         "numba>=0.61,<0.69",
         "numpy>=1.26",
         "pydantic>=2.5",
         "uvms_core",
     ],
-    extras_require={"panels": ["capytaine>=3.0", "scipy>=1.11", "trimesh>=4.0"]},
+    extras_require={
+        "panels": ["capytaine>=3.0", "scipy>=1.11", "trimesh>=4.0"],
+        "test": ["hypothesis", "pin", "pytest", "uvms_dynamics[panels]"],
+    },
     zip_safe=False,
     entry_points={
         "console_scripts": [
             "plant = uvms_dynamics.nodes.plant:main",
         ],
         "uvms.nodes": ["plant = uvms_dynamics.nodes.plant:PlantNode"],
+        "uvms.sensors": [
+            "imu = uvms_dynamics.simulation.sensors.imu:ImuSensor",
+            "dvl = uvms_dynamics.simulation.sensors.dvl:DvlSensor",
+            "pressure = uvms_dynamics.simulation.sensors.pressure:PressureSensor",
+            "gps = uvms_dynamics.simulation.sensors.gps:GpsSensor",
+        ],
         "uvms.kernels": ["uvms_dynamics = uvms_dynamics.kernels"],
     },
 )

@@ -7,7 +7,6 @@ setup(
     version="0.1.0",
     description="Navigation filter and self-disturbance observer of an underwater vehicle-manipulator system.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -17,12 +16,13 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=[
-        "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
+        "scipy>=1.11",
         "uvms_core",
         "uvms_dynamics",
     ],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [
@@ -32,6 +32,14 @@ setup(
         "uvms.nodes": [
             "navigation = uvms_observer.nodes.navigation:NavigationNode",
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
+        ],
+        "uvms.observers": ["momentum_residual = uvms_observer.disturbance:DisturbanceObserver"],
+        "uvms.navigation_filters": ["error_state_ekf = uvms_observer.navigation:NavigationFilter"],
+        "uvms.measurements": [
+            "imu = uvms_observer.navigation.measurements.imu:Gyrocompass",
+            "dvl = uvms_observer.navigation.measurements.dvl:DvlVelocity",
+            "pressure = uvms_observer.navigation.measurements.pressure:PressureDepth",
+            "gps = uvms_observer.navigation.measurements.gps:GpsPosition",
         ],
         "uvms.kernels": ["uvms_observer = uvms_observer"],
     },

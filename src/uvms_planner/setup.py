@@ -7,7 +7,6 @@ setup(
     version="0.1.0",
     description="Motion planner that moves vehicle and arm together with the least self-disturbance.",
     maintainer="UVMS maintainers",
-    maintainer_email="maintainers@uvms.example",
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
@@ -17,12 +16,13 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=[
-        "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
+        "scipy>=1.11",
         "uvms_core",
         "uvms_dynamics",
     ],
+    extras_require={"test": ["hypothesis", "pytest"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [
@@ -30,6 +30,11 @@ setup(
         ],
         "uvms.nodes": [
             "motion_planner = uvms_planner.nodes.motion_planner:MotionPlannerNode",
+        ],
+        "uvms.planners": [
+            "genetic = uvms_planner.methods.genetic:Genetic",
+            "least_norm = uvms_planner.methods.least_norm:LeastNorm",
+            "arm_only = uvms_planner.methods.arm_only:ArmOnly",
         ],
         "uvms.kernels": ["uvms_planner = uvms_planner"],
     },

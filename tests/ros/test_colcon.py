@@ -1,6 +1,7 @@
 """The same sources build in a ROS 2 workspace, and `ros2 run` finds the nodes there."""
 
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -9,6 +10,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.prefix) / "bin"
+ALL = [*sorted(file.parent for file in (ROOT / "src").glob("*/package.xml")), ROOT / "bringup"]
 NODES = [
     ("uvms_dynamics", "plant"),
     ("uvms_observer", "navigation"),
@@ -21,22 +23,37 @@ NODES = [
 pytestmark = pytest.mark.slow
 
 
+def colcon(place, verb, *options, packages=ALL):
+    """Run a colcon command on packages of the project, with this environment as the underlay."""
+    command = [BIN / "colcon", "--log-base", place / "log", verb, "--base-paths", *packages]
+    command += ["--build-base", place / "build", "--install-base", place / "install"]
+    environment = {**os.environ, "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
+    environment["AMENT_PREFIX_PATH"] = sys.prefix
+    done = subprocess.run(
+        list(map(str, [*command, *options])),
+        cwd=place,
+        env=environment,
+        capture_output=True,
+        text=True,
+    )
+    assert done.returncode == 0, done.stdout[-5000:] + done.stderr[-5000:]
+
+
+def results(place):
+    """Numbers of tests, errors, failures and skipped tests that `colcon test-result` reports."""
+    command = [BIN / "colcon", "test-result", "--test-result-base", place / "build"]
+    done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
+    pattern = r"Summary: (\d+) tests, (\d+) errors, (\d+) failures, (\d+) skipped"
+    return tuple(map(int, re.search(pattern, done.stdout).groups()))
+
+
 @pytest.fixture(scope="module")
 def workspace(tmp_path_factory):
     """An installation made by `colcon build`, with this environment's ROS as its underlay."""
     place = tmp_path_factory.mktemp("workspace")
-    packages = [str(folder) for folder in sorted((ROOT / "src").iterdir())]
-    command = [BIN / "colcon", "--log-base", place / "log", "build"]
-    command += ["--base-paths", *packages, ROOT / "bringup"]
-    command += ["--build-base", place / "build", "--install-base", place / "install"]
-    command += ["--merge-install", "--event-handlers", "console_direct+"]
-    command += ["--cmake-args", "-DBUILD_TESTING=OFF", f"-DPython3_EXECUTABLE={sys.executable}"]
-    environment = {**os.environ, "PATH": f"{BIN}{os.pathsep}{os.environ['PATH']}"}
-    environment["AMENT_PREFIX_PATH"] = sys.prefix
-    built = subprocess.run(
-        list(map(str, command)), cwd=place, env=environment, capture_output=True, text=True
-    )
-    assert built.returncode == 0, built.stdout[-5000:] + built.stderr[-5000:]
+    build = ["--merge-install", "--event-handlers", "console_direct+", "--cmake-args"]
+    build += ["-DBUILD_TESTING=OFF", f"-DPython3_EXECUTABLE={sys.executable}"]
+    colcon(place, "build", *build)
     return place / "install"
 
 
@@ -103,3 +120,22 @@ def test_configuration_is_shared(workspace):
     assert {file.name for file in shared.iterdir()} == scenarios
     command = "python -c 'from uvms_core.vehicle import locate; print(*locate.known_vehicles())'"
     assert in_workspace(workspace, command).split() == ["bluerov2_alpha5", "reference_auv"]
+
+
+def test_colcon_test_runs_the_tests_of_a_package(workspace):
+    """Every package points to its tests in the same way (tests/architecture); one is run here."""
+    place = workspace.parent
+    colcon(place, "test", "--merge-install", "--packages-select", "uvms_core")
+    tests, *faults = results(place)
+    assert tests > 100
+    assert faults == [0, 0, 0]
+
+
+def test_colcon_test_needs_no_merged_workspace(tmp_path):
+    """A folder for each package: it sees only what it depends on."""
+    core = [ROOT / "src/uvms_core"]
+    colcon(tmp_path, "build", packages=core)
+    colcon(tmp_path, "test", "--pytest-args", "-k", "topics", packages=core)
+    tests, *faults = results(tmp_path)
+    assert tests > 5
+    assert faults == [0, 0, 0]

@@ -74,20 +74,20 @@ def test_nobody_is_asked_who_is_not_there_nor_twice_at_once():
 
 def test_the_roll_call_gets_over_a_lost_answer():
     with graph_of(Forgetful, lambda: Node("asker")) as (spinner, (forgetful, asker)):
-        roll_call = RollCall(asker, ("controller", "navigation"), AGAIN_S)
-        told = set()
+        roll_call = RollCall(asker, ("controller", "navigation"), again_s=AGAIN_S)
+        seen = set()
 
         def came() -> bool:
-            told.update(roll_call.poll().items())
+            seen.update(roll_call.poll().items())
             return "controller" not in roll_call.poll()
 
         spin_until(spinner, came)
         assert roll_call.poll() == {"navigation": NOT_UP}
-    assert ("controller", NO_ANSWER) in told
+    assert ("controller", NO_ANSWER) in seen
     assert forgetful.asked >= 2
 
 
-def test_who_is_waited_for_is_told_and_named_in_the_error(monkeypatch, capfd):
+def test_who_is_missing_is_printed_and_named_in_the_error(monkeypatch, capfd):
     monkeypatch.setattr(conductor, "START_PATIENCE_S", 1.0)
     monkeypatch.setattr(conductor, "NOTICE_S", 0.4)
 
@@ -95,8 +95,10 @@ def test_who_is_waited_for_is_told_and_named_in_the_error(monkeypatch, capfd):
         return Conductor(lambda *message: None, lambda: None, ())
 
     with graph_of(lead, PlantNode) as (spinner, (leader, _)):
-        with pytest.raises(RunError, match=r"in vain for: .*motion_planner: has not come up"):
-            leader.lead(spinner, None)
+        with pytest.raises(
+            RunError, match=r"timed out after 1 s .*motion_planner: has not come up"
+        ):
+            leader.conduct(spinner, None)
     err = capfd.readouterr().err
     assert "waiting for: " in err
     assert "controller: has not come up" in err
@@ -104,8 +106,8 @@ def test_who_is_waited_for_is_told_and_named_in_the_error(monkeypatch, capfd):
 
 def test_a_node_that_is_not_up_is_named_before_what_others_lack():
     lacks = {"plant": "nobody publishes 'joint_command'", "controller": NOT_UP}
-    assert conductor._told(lacks) == "controller: has not come up"
-    assert conductor._told({"plant": "no topic"}) == "plant: no topic"
+    assert conductor._missing(lacks) == "controller: has not come up"
+    assert conductor._missing({"plant": "no topic"}) == "plant: no topic"
 
 
 def test_the_plant_may_be_asked_twice_to_start_and_to_go_on():

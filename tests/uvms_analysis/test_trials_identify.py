@@ -10,9 +10,9 @@ from made_trials import DATA, VEHICLE, made_trial, write_trial
 from uvms_analysis.errors import TrialError
 from uvms_analysis.trials import identify as identify_module
 from uvms_analysis.trials.fit import fit, group_of
-from uvms_analysis.trials.identify import Identified, courses_of, identify, report
+from uvms_analysis.trials.identify import Identified, identify, prepared_trials, report
 from uvms_analysis.trials.parameters import CANDIDATES, changed, present, value_at
-from uvms_analysis.trials.predict import drive_model, dynamic, make_course
+from uvms_analysis.trials.predict import drive_model, dynamic, prepare_trial
 from uvms_analysis.trials.rewrite import rewritten
 from uvms_analysis.trials.score import scores
 from uvms_bringup.cli import main
@@ -54,7 +54,7 @@ def test_the_repository_carries_what_the_trials_give(data):
     parameters = chosen(data, *identified)
     assert len(parameters) == len(identified)
     off = {p.path: value_at(data, p.path) + p.scale * 0.5 for p in parameters}
-    found = fit(changed(data, off), courses_of(str(DATA)), parameters)
+    found = fit(changed(data, off), prepared_trials(str(DATA)), parameters)
     shipped = np.array([value_at(data, p.path) for p in parameters])
     assert (np.abs(found.values - shipped) < 0.2 * found.errors).all()
     assert (found.errors < [p.worst_error for p in parameters]).all()
@@ -82,7 +82,7 @@ def made(data):
 
 def test_known_constants_are_found_again(data, made):
     truth, trials = made
-    found = identify(data, [make_course(trial) for trial in trials])
+    found = identify(data, [prepare_trial(trial) for trial in trials])
     for parameter, value, error in zip(
         found.fit.parameters, found.fit.values, found.fit.errors, strict=True
     ):
@@ -97,25 +97,25 @@ def test_known_constants_are_found_again(data, made):
 
 
 def test_the_report_says_how_many_motions_the_errors_rest_on(data, made):
-    courses = [make_course(trial) for trial in made[1]]
+    prepared = [prepare_trial(trial) for trial in made[1]]
     few, many = (
-        fit(data, part, chosen(data, *STATIC), precision=1e-3) for part in (courses[:4], courses)
+        fit(data, part, chosen(data, *STATIC), precision=1e-3) for part in (prepared[:4], prepared)
     )
     assert (few.groups, many.groups) == (4, 8)
     text = report(Identified(data, few))
     assert "jackknife over 4 motions" in text
     assert "warning: 4 motions are too few for these errors" in text
     assert "warning" not in report(Identified(data, many))
-    rmse = [[s.rmse for s in row] for row in predicted_scores(data, many, courses)]
+    rmse = [[s.rmse for s in row] for row in predicted_scores(data, many, prepared)]
     np.testing.assert_allclose(many.median_deg, np.median(rmse, axis=0), rtol=1e-6)
     assert many.rms_deg == pytest.approx(np.sqrt(np.mean(np.square(rmse))), rel=1e-6)
 
 
-def predicted_scores(data, found, courses):
+def predicted_scores(data, found, prepared):
     paths = [p.path for p in found.parameters]
     new = changed(data, dict(zip(paths, map(float, found.values), strict=True)))
     drive = drive_model(vehicle_from_data(new))
-    return [scores(each.trial, dynamic(each, *drive).tilt) for each in courses]
+    return [scores(each.trial, dynamic(each, *drive).tilt) for each in prepared]
 
 
 def test_the_vehicle_file_is_not_written_over(tmp_path, capsys):
@@ -128,8 +128,8 @@ def test_the_vehicle_file_is_not_written_over(tmp_path, capsys):
 
 
 def test_an_arm_at_rest_shows_little(data):
-    """In one pose of the arm, its heading and the static moment are not to be told apart."""
-    resting = [course for course in courses_of(str(DATA)) if "baseline" in course.trial.name]
+    """In one pose of the arm, its heading and the static moment are not to be printed apart."""
+    resting = [each for each in prepared_trials(str(DATA)) if "baseline" in each.trial.name]
     candidates = chosen(data, *STATIC[:2], "arm.base.rpy_deg.2", "hull.linear_damping.3")
     found = identify(data, resting, candidates=candidates)
     fitted = {parameter.path for parameter in found.fit.parameters}
@@ -139,14 +139,14 @@ def test_an_arm_at_rest_shows_little(data):
 
 
 def test_nothing_at_all_is_an_error(data):
-    resting = [course for course in courses_of(str(DATA)) if "baseline" in course.trial.name]
+    resting = [each for each in prepared_trials(str(DATA)) if "baseline" in each.trial.name]
     with pytest.raises(TrialError, match="determine none of the constants:\n  quadratic roll"):
         identify(data, resting, candidates=chosen(data, "hull.quadratic_damping.3"))
 
 
 def test_two_trials_do_not_show_errors(data, made):
     with pytest.raises(TrialError, match=r"2 trials do not show how well .* at least 3"):
-        fit(data, [make_course(trial) for trial in made[1][:2]], chosen(data, *STATIC))
+        fit(data, [prepare_trial(trial) for trial in made[1][:2]], chosen(data, *STATIC))
 
 
 def test_repeats_of_a_motion_are_one_group():
@@ -196,9 +196,9 @@ class TestVehicleFile:
         output = tmp_path / "out" / "mine.yaml"
         arguments = ["identify", str(trials), "--vehicle", str(VEHICLE), "--output", str(output)]
         assert main(arguments) == 0
-        told = capsys.readouterr()
-        assert f"written: {output}" in told.out
-        assert "std error" in told.out
-        assert "giving up" in told.err
+        printed = capsys.readouterr()
+        assert f"written: {output}" in printed.out
+        assert "std error" in printed.out
+        assert "giving up" in printed.err
         assert load_vehicle(output).name == "bluerov2_alpha5"
         assert "# A real vehicle" in output.read_text(encoding="utf-8")

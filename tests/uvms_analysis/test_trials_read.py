@@ -103,18 +103,18 @@ class TestUnits:
         def read(**changed):
             new = {**columns, **changed}
             new = {name: values for name, values in new.items() if values is not None}
-            file, told = tmp_path / "mine.csv", []
+            file, notes_logged = tmp_path / "mine.csv", []
             rows = np.column_stack(list(new.values()))
             np.savetxt(file, rows, delimiter=",", header=",".join(new), comments="")
-            read_trial(file, told.append)
-            return [note.removeprefix(f"note: {file}: ") for note in told]
+            read_trial(file, notes_logged.append)
+            return [note.removeprefix(f"note: {file}: ") for note in notes_logged]
 
         return read
 
     def test_shipped_trials_are_beyond_doubt(self):
-        told = []
-        read_trials(DATA, told.append)
-        assert told == []
+        notes_logged = []
+        read_trials(DATA, notes_logged.append)
+        assert notes_logged == []
 
     def test_joint_angles_in_degrees(self, notes, columns):
         with pytest.raises(TrialError, match=r"column q_e: .* are these radians\?"):

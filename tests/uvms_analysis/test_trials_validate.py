@@ -8,7 +8,7 @@ from made_trials import DATA, VEHICLE, body_matrix, made_trial, write_trial
 
 from uvms_analysis.trials import convention
 from uvms_analysis.trials.motion import joint_motion
-from uvms_analysis.trials.predict import drive_model, dynamic, make_course
+from uvms_analysis.trials.predict import drive_model, dynamic, prepare_trial
 from uvms_analysis.trials.read import read_trial
 from uvms_analysis.trials.score import medians, scores
 from uvms_analysis.trials.sensor import sensor_tilts
@@ -87,8 +87,8 @@ def test_only_the_initial_state_is_looked_at(vehicle):
     for values in other:
         values[later] += np.random.default_rng(1).normal(size=values[later].shape)
     changed = dataclasses.replace(trial, attitude=other[0], position=other[1], gyro=other[2])
-    expected = dynamic(make_course(trial), *drive).tilt
-    np.testing.assert_array_equal(dynamic(make_course(changed), *drive).tilt, expected)
+    expected = dynamic(prepare_trial(trial), *drive).tilt
+    np.testing.assert_array_equal(dynamic(prepare_trial(changed), *drive).tilt, expected)
     measured = trial.tilt[~later & trial.accepted].mean(axis=0)
     np.testing.assert_allclose(expected[0], measured, atol=1e-6)
 
@@ -96,22 +96,22 @@ def test_only_the_initial_state_is_looked_at(vehicle):
 def test_the_model_predicts_what_it_made(vehicle):
     """From rest, with the same constants, nothing is left but the smoothing of the joints."""
     trial = made_trial(vehicle, 3)
-    said = dynamic(make_course(trial), *drive_model(vehicle))
+    predicted = dynamic(prepare_trial(trial), *drive_model(vehicle))
     assert np.abs(trial.tilt - trial.tilt[0]).max() > 1.0
-    np.testing.assert_allclose(said.tilt, trial.tilt, atol=0.02)
+    np.testing.assert_allclose(predicted.tilt, trial.tilt, atol=0.02)
 
 
 def test_scores_by_hand(vehicle):
     trial = made_trial(vehicle, 3)
-    said = trial.tilt + [0.3, 0.0] + np.outer(np.sin(trial.t), [0.0, 0.0])
-    roll, pitch = scores(trial, said)
+    predicted = trial.tilt + [0.3, 0.0] + np.outer(np.sin(trial.t), [0.0, 0.0])
+    roll, pitch = scores(trial, predicted)
     assert roll == pytest.approx((0.3, 0.0, 1.0), abs=1e-9)
     assert pitch == pytest.approx((0.0, 0.0, 1.0), abs=1e-9)
-    held = np.full_like(said, 2.0)
+    held = np.full_like(predicted, 2.0)
     assert np.isnan(scores(trial, held)[0].correlation)
     unscored = dataclasses.replace(trial, accepted=trial.t < 10.0)
-    said[trial.t >= 10.0] += 50.0
-    assert scores(unscored, said)[0].rmse == pytest.approx(0.3)
+    predicted[trial.t >= 10.0] += 50.0
+    assert scores(unscored, predicted)[0].rmse == pytest.approx(0.3)
 
 
 class TestCommand:
@@ -125,15 +125,15 @@ class TestCommand:
         output = tmp_path / "deep" / "out"
         arguments = ["validate", str(trials), "--vehicle", str(VEHICLE), "--output", str(output)]
         assert main([*arguments, "--figures"]) == 0
-        told = capsys.readouterr().out
-        assert told.count("median of 2") == 6
-        assert told.count("made1") == 6
-        assert (output / "table.txt").read_text(encoding="utf-8") == told
-        said = columns(output / "made2.csv")
-        assert list(said) == ["t", "roll", "pitch"]
+        printed = capsys.readouterr().out
+        assert printed.count("median of 2") == 6
+        assert printed.count("made1") == 6
+        assert (output / "table.txt").read_text(encoding="utf-8") == printed
+        predicted = columns(output / "made2.csv")
+        assert list(predicted) == ["t", "roll", "pitch"]
         trial = read_trial(trials / "made2.csv")
-        np.testing.assert_allclose(said["t"], trial.t)
-        np.testing.assert_allclose(said["pitch"], trial.tilt[:, 1], atol=0.03)
+        np.testing.assert_allclose(predicted["t"], trial.t)
+        np.testing.assert_allclose(predicted["pitch"], trial.tilt[:, 1], atol=0.03)
         assert sorted(file.name for file in output.glob("*.png")) == [
             "trials_pitch.png",
             "trials_rmse.png",
@@ -157,11 +157,13 @@ class TestCommand:
 
         file = with_three_joints(tmp_path)
         assert main(["validate", str(DATA), "--vehicle", str(file)]) == 2
-        told = capsys.readouterr().err
-        assert "has 3 joints: base, shoulder, elbow; the trials' arm has 4: base, shoulder" in told
+        printed = capsys.readouterr().err
+        assert (
+            "has 3 joints: base, shoulder, elbow; the trials' arm has 4: base, shoulder" in printed
+        )
         assert main(["validate", str(DATA), "--vehicle", "reference_auv"]) == 2
-        told = capsys.readouterr().err
-        assert "4 joints: swing, shoulder, elbow, wrist; the trials' arm has 4: base" in told
+        printed = capsys.readouterr().err
+        assert "4 joints: swing, shoulder, elbow, wrist; the trials' arm has 4: base" in printed
 
     def test_a_vehicle_that_is_another(self, tmp_path, capsys, vehicle):
         """Ballast moved: the table's end says that the file does not describe the trials."""
@@ -172,17 +174,17 @@ class TestCommand:
         assert main(["validate", str(tmp_path), "--vehicle", str(other)]) == 0
         assert "predicts pitch worse than `constant`" in capsys.readouterr().out
         assert main(["validate", str(tmp_path), "--vehicle", str(VEHICLE)]) == 0
-        told = capsys.readouterr().out
-        assert "worse" not in told
-        assert "no offset: the same after" in told
-        assert "attitude sensor" not in told
+        printed = capsys.readouterr().out
+        assert "worse" not in printed
+        assert "no offset: the same after" in printed
+        assert "attitude sensor" not in printed
 
 
 def test_no_trim_starts_from_the_models_own_rest(vehicle):
     """With ballast unknown to the file, only the trim keeps the vehicle where it floats."""
     trial, drive = made_trial(vehicle, 3, arm=False), drive_model(vehicle)
     tilted = dataclasses.replace(trial, attitude=trial.attitude + [0.0, 1.0, 0.0])
-    held, free = (dynamic(make_course(tilted), *drive, trim) for trim in (True, False))
+    held, free = (dynamic(prepare_trial(tilted), *drive, trim) for trim in (True, False))
     still = tilted.t < 1.0
     assert np.abs(held.tilt - tilted.tilt)[still].max() < 0.1
     assert np.abs(free.tilt - tilted.tilt)[still].max() > 0.3

@@ -9,6 +9,7 @@ import pytest
 
 from uvms_analysis.log.read import RunLog
 from uvms_bringup.cli import main
+from uvms_core import registry
 
 BRINGUP = Path(__file__).parents[2] / "bringup" / "bringup.py"
 COMMANDS = ("run", "simulate", "replay", "report")
@@ -265,3 +266,67 @@ def test_simulate_says_nothing_of_options_that_are_not_given(capsys):
     options = ["--pace", "lockstep", "--duration", "0.1", "--output", "quick"]
     assert main(["simulate", "hover", *options]) == 0
     assert "note:" not in capsys.readouterr().err
+
+
+OWN_COMMAND = """
+from uvms_core.command import Command
+from uvms_core.errors import UvmsError
+
+
+def add_arguments(parser):
+    parser.add_argument("depth", type=float)
+
+
+def run(options):
+    if options.depth < 0.0:
+        raise UvmsError(f"depth {options.depth:g} m: choose at least 0")
+    print(f"{options.command_line} at {options.depth:g} m")
+    return 3
+
+
+COMMAND = Command("go to a depth", add_arguments, run)
+"""
+
+
+@pytest.fixture
+def installed(tmp_path, monkeypatch):
+    """Installs modules and entry points of commands as `pip install` would leave them."""
+
+    def install(entries, **modules):
+        place = tmp_path / "site"
+        info = place / "own_commands-1.0.dist-info"
+        info.mkdir(parents=True)
+        (info / "METADATA").write_text("Metadata-Version: 2.1\nName: own_commands\nVersion: 1.0\n")
+        (info / "entry_points.txt").write_text("\n".join(["[uvms.commands]", *entries]) + "\n")
+        for name, text in modules.items():
+            (place / f"{name}.py").write_text(text)
+        monkeypatch.syspath_prepend(str(place))
+        registry._entries.cache_clear()
+
+    yield install
+    monkeypatch.undo()
+    registry._entries.cache_clear()
+
+
+def help_text(capsys, *arguments):
+    with pytest.raises(SystemExit) as end:
+        main([*arguments, "--help"])
+    assert end.value.code == 0
+    return capsys.readouterr().out
+
+
+def test_another_package_adds_a_command(capsys, installed):
+    installed(["dive = own_dive:COMMAND"], own_dive=OWN_COMMAND)
+    assert "go to a depth" in help_text(capsys)
+    assert "Go to a depth." in help_text(capsys, "dive")
+    assert main(["dive", "2.5"]) == 3
+    assert capsys.readouterr().out == "uvms dive 2.5 at 2.5 m\n"
+    assert error_of(capsys, "dive", "-1") == "depth -1 m: choose at least 0"
+
+
+def test_a_command_that_cannot_be_imported_leaves_the_others_alone(capsys, installed):
+    installed(["dive = own_missing:COMMAND"])
+    text = " ".join(help_text(capsys).split())
+    assert "dive (not available: command 'dive': cannot import own_missing:COMMAND" in text
+    assert error_of(capsys, "report", "no.mcap").startswith("log no.mcap")
+    assert error_of(capsys, "dive").startswith("command 'dive': cannot import own_missing")

@@ -194,10 +194,10 @@ def test_a_wrench_that_is_not_finite_is_named():
     tau[4] = np.nan
     with pytest.raises(SignalError) as error:
         REFERENCE.step(Wrench(0, tau))
-    assert str(error.value) == "wrench_command.M: nan, expected a finite number"
+    assert str(error.value) == "wrench_command.wrench[4] is nan; it must be finite"
     with pytest.raises(SignalError) as error:
         REFERENCE.step(Wrench(0, np.zeros(5)))
-    assert str(error.value) == "wrench_command: shape (5,), expected (6,)"
+    assert str(error.value) == "wrench_command.wrench has shape (5,); it must have (6,)"
 
 
 def test_a_wrong_layout_is_named():

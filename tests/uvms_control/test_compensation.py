@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from uvms_control import CompensationConfig
 from uvms_control.compensation import EndEffectorCompensation
 from uvms_control.reference import ReferenceSample
-from uvms_control.vehicle_data import joint_limits
-from uvms_core.vehicle import load_vehicle
+from uvms_core.vehicle import joint_limits, load_vehicle
 from uvms_dynamics import build_model, end_effector
 from uvms_dynamics.kernels.rotations import rotation_vector_to_quat
 

@@ -30,26 +30,25 @@ def with_nan(array, *index):
 
 def bad_inputs():
     odometry, joints, disturbance, reference = inputs()
-    finite = "expected a finite number"
     yield (
         (replace(odometry, nu=with_nan(odometry.nu, 4)), joints, disturbance, reference),
-        f"odometry.nu[4]: nan, {finite}",
+        "odometry.nu[4] is nan; it must be finite",
     )
     yield (
         (replace(odometry, position=np.zeros(2)), joints, disturbance, reference),
-        "odometry.position: shape (2,), expected (3,)",
+        "odometry.position has shape (2,); it must have (3,)",
     )
     yield (
         (replace(odometry, quaternion=np.ones(4)), joints, disturbance, reference),
-        "odometry.quaternion: length 2, expected 1 within 0.001",
+        "odometry.quaternion has length 2; it must be 1",
     )
     yield (
         (odometry, replace(joints, position=np.zeros(3)), disturbance, reference),
-        "joint_states.position: shape (3,), expected (4,)",
+        "joint_states.position has shape (3,); it must have (4,) for swing, shoulder, elbow, wrist",
     )
     yield (
         (odometry, replace(joints, velocity=with_nan(joints.velocity, 0)), disturbance, reference),
-        f"joint_states.velocity[0]: nan, {finite}",
+        "joint_states.velocity[swing] is nan; it must be finite",
     )
     yield (
         (odometry, replace(joints, stamp=TICK - 600_000_000), disturbance, reference),
@@ -58,7 +57,7 @@ def bad_inputs():
     )
     yield (
         (odometry, joints, Wrench(TICK, with_nan(np.zeros(6), 2)), reference),
-        f"disturbance[2]: nan, {finite}",
+        "disturbance.wrench[2] is nan; it must be finite",
     )
     yield (
         (odometry, joints, Wrench(TICK + 7, np.zeros(6)), reference),
@@ -67,7 +66,7 @@ def bad_inputs():
     )
     yield (
         (odometry, joints, disturbance, replace(reference, q=with_nan(reference.q, 0, 3))),
-        f"reference.q[0, 3]: nan, {finite}",
+        "reference.q[0, wrist] is nan; it must be finite",
     )
 
 
@@ -87,7 +86,9 @@ def test_time_must_go_on_until_a_reset():
     controller.step(*inputs())
     with pytest.raises(SignalError) as error:
         controller.step(*inputs())
-    assert str(error.value) == f"odometry: stamp {TICK} ns, expected one after {TICK} ns"
+    assert str(error.value) == (
+        f"odometry.stamp is {TICK} ns; it must be after the last one's, {TICK} ns"
+    )
     controller.reset()
     controller.step(*inputs())
 

@@ -8,12 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from trajectories import joints, reference, vehicle
 
-from uvms_control.reference import check_reference, right_jacobian, sample_reference
+from uvms_control.reference import right_jacobian, sample_reference
+from uvms_core.checks import check
 from uvms_core.errors import SignalError
 from uvms_core.signals import to_nanoseconds
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rotation_vector_to_quat, skew
 
 TIMES = np.linspace(0.0, 0.5, 6)
+JOINT_NAMES = ("a", "b", "c", "d")
 STAMP = 3_000_000_000
 
 
@@ -100,25 +102,31 @@ def test_both_quaternion_signs_give_the_same_motion():
 
 def test_bad_references_are_named():
     good = reference(TIMES)
-    check_reference(good, 4)
+    check("reference", good, n=JOINT_NAMES)
     bad = good.q.copy()
     bad[2, 1] = np.nan
     cases = [
-        (replace(good, q=bad), "reference.q[2, 1]: nan, expected a finite number"),
-        (replace(good, nu=good.nu[:4]), "reference.nu: shape (4, 6), expected (6, 6)"),
+        (replace(good, q=bad), "reference.q[2, b] is nan; it must be finite"),
+        (replace(good, nu=good.nu[:4]), "reference.nu has shape (4, 6); it must have (6, 6)"),
         (
             replace(good, quaternion=2.0 * good.quaternion),
-            "reference.quaternion[0]: length 2, expected 1 within 0.001",
+            "reference.quaternion[0] has length 2; it must be 1",
         ),
-        (replace(good, times=np.empty(0)), "reference.times: empty, expected at least one sample"),
+        (
+            replace(good, times=np.empty(0)),
+            "reference.times has shape (0,); it must have (k,), k >= 1",
+        ),
         (
             replace(good, times=-good.times),
-            f"reference.times: {-good.times}, expected to increase from 0",
+            f"reference.times is {-good.times}; it must increase from 0",
         ),
     ]
     for wrong, message in cases:
         with pytest.raises(SignalError) as error:
-            check_reference(wrong, 4)
+            check("reference", wrong, n=JOINT_NAMES)
         assert str(error.value) == message
-    with pytest.raises(SignalError, match=r"reference.q: shape \(6, 4\), expected \(6, 3\)"):
-        check_reference(good, 3)
+    for each in (good, replace(good)):  # already checked, and not yet
+        with pytest.raises(
+            SignalError, match=r"reference.q has .*; it must have \(6, 3\) for a, b"
+        ):
+            check("reference", each, n=JOINT_NAMES[:3])

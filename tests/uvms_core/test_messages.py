@@ -10,7 +10,7 @@ from examples import JOINTS, carrying, example, names_of
 from uvms_core import topics
 from uvms_core.errors import SignalError
 from uvms_core.messages import from_message, to_message
-from uvms_core.messages.sensors import swap_ned_enu
+from uvms_core.sensors.gps import swap_ned_enu
 from uvms_core.signals import GpsSample, Odometry
 
 

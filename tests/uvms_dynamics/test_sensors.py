@@ -41,7 +41,7 @@ def exact(**rates):
 
 
 def test_imu_noise_has_the_files_size():
-    sensor = ImuSensor(SENSORS.imu, 9.81, PERIOD, seed=1)
+    sensor = ImuSensor(REFERENCE, SENSORS.imu, PERIOD, seed=1)
     samples = sensor.sample(at_rest(20_000))
     attitude = np.degrees([quat_to_rotation_vector(s.quaternion) for s in samples])
     imu = SENSORS.imu
@@ -62,7 +62,7 @@ def changes(values):
 def test_imu_biases_are_spread_as_the_file_says_and_slow():
     first = [
         quat_to_rotation_vector(
-            ImuSensor(SENSORS.imu, 9.81, PERIOD, seed).sample(at_rest(1))[0].quaternion
+            ImuSensor(REFERENCE, SENSORS.imu, PERIOD, seed).sample(at_rest(1))[0].quaternion
         )
         for seed in range(600)
     ]
@@ -72,7 +72,7 @@ def test_imu_biases_are_spread_as_the_file_says_and_slow():
         [imu.roll_pitch_noise_deg] * 2 + [imu.heading_noise_deg],
     )
     np.testing.assert_allclose(np.degrees(np.std(first, axis=0)), total, rtol=0.1)
-    sample = ImuSensor(imu, 9.81, PERIOD, 1).sample(at_rest(1))[0]
+    sample = ImuSensor(REFERENCE, imu, PERIOD, 1).sample(at_rest(1))[0]
     np.testing.assert_allclose(
         np.degrees(np.sqrt(np.diag(sample.orientation_covariance))), total, rtol=1e-9
     )
@@ -83,7 +83,7 @@ def test_imu_bias_forgets_with_its_time_constant():
         overrides={**exact(), "sensors.imu.accelerometer_bias_m_s2": 1.0,
                    "sensors.imu.bias_time_constant_s": 0.1}
     )  # fmt: skip
-    samples = ImuSensor(fast.sensors.imu, 9.81, PERIOD, 1).sample(at_rest(50_000))
+    samples = ImuSensor(fast, fast.sensors.imu, PERIOD, 1).sample(at_rest(50_000))
     bias = np.array([s.linear_acceleration for s in samples]) - [0.0, 0.0, -9.81]
     np.testing.assert_allclose(bias.std(axis=0), 1.0, rtol=0.1)
     lagged = np.mean(bias[10:] * bias[:-10], axis=0)  # one time constant apart
@@ -91,7 +91,7 @@ def test_imu_bias_forgets_with_its_time_constant():
 
 
 def test_dvl_noise_and_scale():
-    sensor = DvlSensor(SENSORS.dvl, PERIOD, seed=2)
+    sensor = DvlSensor(REFERENCE, SENSORS.dvl, PERIOD, seed=2)
     samples = sensor.sample(at_rest(20_000))
     velocity = np.array([s.velocity for s in samples])
     np.testing.assert_allclose(velocity.std(axis=0), SENSORS.dvl.noise_m_s, rtol=0.03)
@@ -100,13 +100,15 @@ def test_dvl_noise_and_scale():
     moving = at_rest(1)
     moving.states[:, 7] = 10.0
     for seed in range(400):
-        scales.append(DvlSensor(SENSORS.dvl, PERIOD, seed).sample(moving)[0].velocity[0] / 10.0)
+        scales.append(
+            DvlSensor(REFERENCE, SENSORS.dvl, PERIOD, seed).sample(moving)[0].velocity[0] / 10.0
+        )
     assert np.std(scales) == pytest.approx(SENSORS.dvl.scale_error, rel=0.12)
 
 
 def test_pressure_noise_bias_and_depth():
     def read(seed, count=1, depth=10.0):
-        sensor = PressureSensor(SENSORS.pressure, ENVIRONMENT, PERIOD, seed)
+        sensor = PressureSensor(REFERENCE, SENSORS.pressure, PERIOD, seed)
         return np.array([s.pressure for s in sensor.sample(at_rest(count, depth))])
 
     assert read(1, 20_000).std() == pytest.approx(SENSORS.pressure.noise_pa, rel=0.03)
@@ -117,7 +119,7 @@ def test_pressure_noise_bias_and_depth():
 
 
 def test_gps_has_a_fix_only_with_the_antenna_in_the_air():
-    sensor = GpsSensor(SENSORS.gps, ENVIRONMENT, PERIOD, seed=3)
+    sensor = GpsSensor(REFERENCE, SENSORS.gps, PERIOD, seed=3)
     (below,) = sensor.sample(at_rest(1, depth=0.3))
     assert not below.fix
     assert np.isnan([below.latitude_deg, below.longitude_deg, below.altitude]).all()

@@ -1,7 +1,7 @@
 """Vehicle and arm under given thrusts, joint torques and a push, with exact sensors.
 
 The kernels' forward dynamics, thruster lag and Runge-Kutta steps: enough to know what an observer
-of wrenches should find. It is not the plant.
+of wrenches should find. Independent of the plant.
 """
 
 from dataclasses import dataclass
@@ -24,7 +24,7 @@ class SmallPlant:
 
     Args:
         vehicle: what is simulated.
-        push: constant wrench on the vehicle, body frame, that nobody knows of.
+        push: constant wrench on the vehicle, body frame, unknown to the observer.
         current: velocity of the water, map_ned.
     """
 

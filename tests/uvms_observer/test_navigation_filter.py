@@ -159,7 +159,7 @@ def test_gyro_and_accelerometer_biases_are_found():
     assert np.abs(odometry[-1].nu[3:] - SWIMMING.omega(60.0)).max() < 5e-4  # bias taken off
 
 
-def test_a_silent_dvl_lets_the_covariance_grow_and_its_return_is_taken():
+def test_without_the_dvl_the_covariance_grows_until_it_returns():
     rig = Rig(VEHICLE, SWIMMING, seed=2)
     navigation = NavigationFilter(VEHICLE, start_of(SWIMMING))
     spread = []
@@ -172,7 +172,7 @@ def test_a_silent_dvl_lets_the_covariance_grow_and_its_return_is_taken():
     assert np.all(np.diff(spread[402:801]) > 0.0)
     assert spread[800] > 25.0 * spread[400]
     assert spread[-1] < 2.0 * spread[400]
-    assert navigation.status()["dvl_gated"] <= 1  # of 320: the gate keeps out one good in 10000
+    assert navigation.status()["dvl_gated"] <= 1  # of 320: the gate rejects one good in 10000
 
 
 @pytest.mark.parametrize("sensor", ["dvl", "pressure", "gps"])
@@ -182,7 +182,7 @@ def test_the_filter_runs_without_a_sensor(sensor):
 
 
 def test_turning_the_world_turns_the_estimate():
-    """A heading offset of start, motion and compass is only another name for the axes."""
+    """A heading offset of start, motion and compass only turns the axes."""
     turn = Rotation.from_euler("Z", 1.1)
     turned = SWIMMING.rpy
     turned = replace(turned, offset=(*turned.offset[:2], turned.offset[2] + 1.1))
@@ -231,7 +231,7 @@ def test_the_same_samples_give_the_same_estimate():
         np.testing.assert_array_equal(ours, theirs)
 
 
-def test_outliers_are_kept_out_and_counted():
+def test_outliers_are_rejected_and_counted():
     navigation = NavigationFilter(VEHICLE, start_of(RESTING))
     for k, (stamp, imu, dvl, pressure, gps) in enumerate(Rig(VEHICLE, RESTING).frames(20.0)):
         if k > 100 and k % 10 == 0:
@@ -243,7 +243,7 @@ def test_outliers_are_kept_out_and_counted():
     assert np.abs(pose_error(RESTING, odometry)[:2]).max() < 0.05
 
 
-def test_a_filter_that_refuses_a_sensor_for_long_doubts_itself():
+def test_a_sensor_that_is_rejected_for_long_is_used_again():
     """The vehicle is moved without its accelerometers noticing: only the DVL knows."""
     config = start_of(RESTING, initial_velocity_std_m_s=1e-3, gate_timeout_s=2.0)
     navigation = NavigationFilter(VEHICLE, config)
@@ -262,7 +262,7 @@ def test_without_an_imu_sample_there_is_no_estimate():
     assert str(caught.value) == "navigation has had no IMU sample yet; it needs an attitude"
 
 
-def test_samples_before_the_first_imu_sample_are_passed_by():
+def test_samples_before_the_first_imu_sample_are_ignored():
     frames = list(Rig(VEHICLE, RESTING).frames(1.0))
     imu = [sample for frame in frames for sample in frame[1] if sample.stamp > to_nanoseconds(0.5)]
     dvl = [sample for frame in frames for sample in frame[2]]

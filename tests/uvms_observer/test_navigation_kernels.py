@@ -1,4 +1,4 @@
-"""The filter's kernels against their numpy twin and against finite differences."""
+"""The filter's kernels against their numpy reference and against finite differences."""
 
 import numpy as np
 import pytest
@@ -7,8 +7,9 @@ from hypothesis import strategies as st
 from nav_states import NOISE, minus, numeric_jacobian, random_state
 from scipy.spatial.transform import Rotation
 
-from uvms_observer.navigation import measurements, reference, updates
+from uvms_observer.navigation import numpy_reference
 from uvms_observer.navigation.correction import correct
+from uvms_observer.navigation.measurements import dvl, imu, position, pressure
 from uvms_observer.navigation.propagation import propagate
 
 G = 9.81
@@ -20,9 +21,9 @@ seeds = st.integers(0, 2**32 - 1)
 
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds, dt=st.floats(1e-4, 0.1))
-def test_propagation_equals_its_twin(seed, dt):
+def test_propagation_equals_the_numpy_reference(seed, dt):
     state = random_state(seed)
-    expected = reference.propagated(state, RATE, FORCE, dt, G, NOISE)
+    expected = numpy_reference.propagated(state, RATE, FORCE, dt, G, NOISE)
     propagate(state, RATE, FORCE, dt, G, NOISE)
     for ours, theirs in zip(state, expected, strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-10, atol=1e-13)
@@ -31,13 +32,15 @@ def test_propagation_equals_its_twin(seed, dt):
 @pytest.mark.parametrize("seed", range(4))
 def test_transition_matrix_is_the_derivative_of_the_propagation(seed):
     state, dt, phi = random_state(seed), 0.01, 0.999
-    nominal = reference.propagated_mean(state, RATE, FORCE, dt, G, phi)
+    nominal = numpy_reference.propagated_mean(state, RATE, FORCE, dt, G, phi)
 
     def error_after(e):
-        moved = reference.propagated_mean(reference.plus(state, e), RATE, FORCE, dt, G, phi)
+        moved = numpy_reference.propagated_mean(
+            numpy_reference.plus(state, e), RATE, FORCE, dt, G, phi
+        )
         return minus(moved, nominal)
 
-    F = reference.transition_matrix(state, RATE, FORCE, dt, phi)
+    F = numpy_reference.transition_matrix(state, RATE, FORCE, dt, phi)
     numeric = numeric_jacobian(error_after)
     gyro = slice(9, 12)  # its column is exact to first order in the turn of one interval
     np.testing.assert_allclose(F[:, gyro], numeric[:, gyro], atol=1e-6)
@@ -64,9 +67,9 @@ def test_a_full_turn_brings_the_attitude_back():
 
 
 EXPECTATIONS = {
-    "dvl": lambda state: measurements.velocity(state, LEVER, RATE),
-    "pressure": lambda state: measurements.depth(state, LEVER),
-    "gps": lambda state: measurements.position(state, LEVER),
+    "dvl": lambda state: dvl.velocity(state, LEVER, RATE),
+    "pressure": lambda state: pressure.depth(state, LEVER),
+    "gps": lambda state: position.position(state, LEVER),
 }
 
 
@@ -75,7 +78,7 @@ EXPECTATIONS = {
 def test_derivative_of_a_reading(sensor, seed):
     state, expect = random_state(seed), EXPECTATIONS[sensor]
     _, H = expect(state)
-    numeric = numeric_jacobian(lambda e: expect(reference.plus(state, e))[0])
+    numeric = numeric_jacobian(lambda e: expect(numpy_reference.plus(state, e))[0])
     np.testing.assert_allclose(H, numeric, atol=1e-8)
 
 
@@ -84,25 +87,25 @@ def test_derivative_of_the_gyrocompass_residual(seed):
     """The bias turns with the attitude's error: a product of two small angles, left out."""
     state = random_state(seed)
     state.compass_bias[:] = 0.0
-    _, H = measurements.attitude(state, state.quaternion)
+    _, H = imu.attitude(state, state.quaternion)
     numeric = numeric_jacobian(
-        lambda e: -measurements.attitude(reference.plus(state, e), state.quaternion)[0]
+        lambda e: -imu.attitude(numpy_reference.plus(state, e), state.quaternion)[0]
     )
     np.testing.assert_allclose(H, numeric, atol=1e-8)
 
 
 @settings(max_examples=25, deadline=None)
 @given(seed=seeds)
-def test_correction_equals_its_twin(seed):
+def test_correction_equals_the_numpy_reference(seed):
     state, rng = random_state(seed), np.random.default_rng(seed)
     H, residual = rng.standard_normal((3, 20)), 0.01 * rng.standard_normal(3)
-    expected = reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]))
+    expected = numpy_reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]))
     correct(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), OPEN)
     for ours, theirs in zip(state, expected, strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-11)
 
 
-def test_correction_returns_the_mahalanobis_distance_and_obeys_the_gate():
+def test_correction_returns_the_mahalanobis_distance_and_keeps_to_the_gate():
     state = random_state(3)
     before = state.copied()
     H, residual, N = np.eye(3, 20), np.array([1.0, 2.0, -1.0]), 0.1 * np.eye(3)
@@ -119,17 +122,17 @@ def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
     state, rng = random_state(seed), np.random.default_rng(seed)
     for _ in range(300):
         propagate(state, RATE, FORCE, 0.01, G, NOISE)
-        updates.correct_attitude(state, state.quaternion.copy(), np.full(3, 1e-10), OPEN)
-        updates.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, OPEN)
-        updates.correct_depth(state, 1.0, 1e-8, LEVER, OPEN)
+        imu.correct_attitude(state, state.quaternion.copy(), np.full(3, 1e-10), OPEN)
+        dvl.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, OPEN)
+        pressure.correct_depth(state, 1.0, 1e-8, LEVER, OPEN)
         np.testing.assert_array_equal(state.covariance, state.covariance.T)
     assert np.linalg.eigvalsh(state.covariance).min() > -1e-15
     assert np.linalg.norm(state.quaternion) == pytest.approx(1.0, abs=1e-14)
 
 
-def test_gyro_noise_reads_through_the_dvl_lever_arm():
+def test_gyro_noise_enters_by_the_lever_arm_of_the_dvl():
     quiet, noisy = random_state(5), random_state(5)
-    measured = measurements.velocity(quiet, LEVER, RATE)[0] + 0.01
-    near = updates.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, OPEN)
-    far = updates.correct_velocity(noisy, measured, 1e-4, LEVER, RATE, 1e-2, OPEN)
+    measured = dvl.velocity(quiet, LEVER, RATE)[0] + 0.01
+    near = dvl.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, OPEN)
+    far = dvl.correct_velocity(noisy, measured, 1e-4, LEVER, RATE, 1e-2, OPEN)
     assert far < near

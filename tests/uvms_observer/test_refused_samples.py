@@ -1,4 +1,4 @@
-"""What the filter and the observer refuse, in what words, and that nothing is lost by it."""
+"""What filter and observer refuse, their messages, and that nothing is lost by it."""
 
 from dataclasses import replace
 
@@ -80,7 +80,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("fault", BAD)
-def test_a_bad_sample_is_named_and_the_filter_goes_on_as_if_it_had_not_come(frames, fault):
+def test_a_bad_sample_is_named_and_the_filter_goes_on_without_it(frames, fault):
     kind, spoil, message = BAD[fault]
     navigation, untouched = (NavigationFilter(VEHICLE, NavigationConfig()) for _ in range(2))
     for frame in frames[:-1]:
@@ -98,16 +98,20 @@ def test_a_bad_sample_is_named_and_the_filter_goes_on_as_if_it_had_not_come(fram
     np.testing.assert_array_equal(after.pose_covariance, expected.pose_covariance)
 
 
-def test_screening_keeps_the_good_samples_of_a_step(frames):
-    navigation = NavigationFilter(VEHICLE, NavigationConfig())
+def test_a_screened_step_uses_the_good_samples(frames):
+    navigation, untouched = (NavigationFilter(VEHICLE, NavigationConfig()) for _ in range(2))
     for frame in frames[:-1]:
         navigation.step(*frame)
+        untouched.step(*frame)
     stamp, imu, dvl, pressure, gps = frames[-1]
     spoilt = replace(pressure[0], pressure=NOT_A_NUMBER)
-    good, faults = navigation.screen(stamp, [*imu, *dvl, spoilt, *gps])
+    samples = {"imu": imu, "dvl": dvl, "pressure": [spoilt], "gps": gps}
+    after, faults = navigation.step_screened(stamp, samples)
     assert [str(fault) for fault in faults] == ["pressure.pressure is nan; it must be finite"]
-    assert len(good) == len(imu) + len(dvl) + len(gps)
-    assert [sample.stamp for sample in good] == sorted(sample.stamp for sample in good)
+    assert navigation.status()["refused"] == 1
+    expected = untouched.step(stamp, imu, dvl, (), gps)
+    np.testing.assert_array_equal(after.position, expected.position)
+    np.testing.assert_array_equal(after.pose_covariance, expected.pose_covariance)
 
 
 def test_a_sample_older_than_the_latency_is_refused(frames):
@@ -152,15 +156,15 @@ WRONG = {
     ),
     "joints": (
         lambda o, j, w: (o, replace(j, position=np.zeros(3)), w),
-        "joints.position has shape (3,); it must have (4,)",
+        "joint_states.position has shape (3,); it must have (4,) for swing, shoulder, elbow, wrist",
     ),
     "rates": (
         lambda o, j, w: (o, replace(j, velocity=with_entry(j.velocity, 0, np.inf)), w),
-        "joints.velocity[0] is inf; it must be finite",
+        "joint_states.velocity[swing] is inf; it must be finite",
     ),
     "wrench": (
         lambda o, j, w: (o, j, Wrench(0, with_entry(w.wrench, 5, NOT_A_NUMBER))),
-        "achieved.wrench[5] is nan; it must be finite",
+        "wrench_achieved.wrench[5] is nan; it must be finite",
     ),
     "stamps": (
         lambda o, j, w: (o, replace(j, stamp=5), w),

@@ -4,8 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from planner_rig import START, reference_vehicle
 
-from uvms_planner.config import LimitsConfig
-from uvms_planner.limits import JointLimits, StepLimits, frozen
+from uvms_planner.config import LimitsConfig, PlannerConfig
+from uvms_planner.limits import JointLimits, StepLimits
+from uvms_planner.methods.arm_only import ArmOnly
 
 JOINTS = JointLimits.of(reference_vehicle())
 LIMITS = StepLimits.of(JOINTS, LimitsConfig(), 0.5)
@@ -68,7 +69,7 @@ def test_what_is_beyond_a_bound_may_come_back_but_not_go_on():
 
 def test_holding_the_vehicle_leaves_the_joints_their_freedom():
     bounds = LIMITS.increments(START, np.zeros(8))
-    held = frozen(bounds)
+    held = ArmOnly(reference_vehicle(), PlannerConfig(), 1).bounds(*bounds)
     for side in range(2):
         assert np.all(held[side][:4] == 0.0)
         assert np.array_equal(held[side][4:], bounds[side][4:])

@@ -296,13 +296,18 @@ def test_a_plan_that_leaves_its_reach_is_given_up_and_says_so():
 @pytest.mark.parametrize(
     ("stamp", "position", "q_deg", "message"),
     [
-        (0, (0.0, 0.0, 1.0), START_DEG, "stamp 0 s does not follow 0 s; stamps must increase"),
-        (1, (0.0, np.nan, 1.0), START_DEG, r"odometry position = \[ 0. nan  1.\] is not finite"),
-        (1, (0.0, 1.0), START_DEG, r"odometry position has shape \(2,\), needed is \(3,\)"),
-        (1, (0.0, 0.0, 1.0), (1.0, 2.0), r"joint position has shape \(2,\), needed is \(4,\)"),
+        (0, (0.0, 0.0, 1.0), START_DEG, "stamp is 0 ns; it must be after the last step's, 0 ns"),
+        (1, (0.0, np.nan, 1.0), START_DEG, r"odometry\.position\[1\] is nan; it must be finite"),
+        (1, (0.0, 1.0), START_DEG, r"odometry\.position has shape \(2,\); it must have \(3,\)"),
+        (
+            1,
+            (0.0, 0.0, 1.0),
+            (1.0, 2.0),
+            r"position has shape \(2,\); it must have \(4,\) for swing",
+        ),
     ],
 )
-def test_malformed_signals_are_told(stamp, position, q_deg, message):
+def test_malformed_signals_are_refused(stamp, position, q_deg, message):
     run = drive()
     with pytest.raises(SignalError, match=message):
         run.planner.step(stamp, odometry(stamp, position), joints(q_deg, stamp))

@@ -1,9 +1,10 @@
-"""The conductor of a run: waits for the nodes, sends the goal, starts time, watches, records."""
+"""The conductor of a run: waits for the nodes, sends the goal, starts time, monitors, records."""
 
+import math
 import sys
 import time
 import uuid
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from rclpy.action import ActionClient
@@ -22,7 +23,7 @@ from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
 from uvms_core.signals import JointGoal, PathGoal, to_seconds
-from uvms_core.topics import Topic
+from uvms_core.topic import NodeTopics, Topic
 from uvms_core.vehicle import Vehicle
 
 START_PATIENCE_S = 180.0
@@ -30,9 +31,11 @@ START_PATIENCE_S = 180.0
 ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0
 NOTICE_S = 10.0
-"""Wall time of silence after which one is told what is being waited for, again and again."""
+"""Wall time between two lines on what is being waited for."""
+FOREIGN_SETTLE_S = 1.0
+"""Wall time in which nodes that do not answer to the roll call find their listeners."""
 SETTLE_S = 0.3
-"""Wall time after the last answers, for what was published beside them, such as a reference."""
+"""Wall time after the last answers for messages still in flight, such as a reference."""
 
 LOOP_END = (
     topics.THRUSTER_COMMAND,
@@ -43,20 +46,33 @@ LOOP_END = (
 
 
 class Conductor(Node):
-    """Leads a run from the first tick to the last and hands every message to `write`.
+    """Conducts a run from the first tick to the last and hands every message to `write`.
 
     Args:
         write: takes every message, as `Recorder` says.
-        watch: called while waiting; raises where the run cannot go on.
+        watch: called while waiting; raises if the run cannot continue.
         joint_names: in the vehicle's order, for goals that name the joints.
+        recorded: topics of the run, `topics.of(vehicle)`.
+        graph: what each node reads and writes, `topics.nodes(vehicle)`.
+        foreign: roles that are filled by nodes which do not answer to the roll call.
+        patient: wait for them without end, because a person starts them.
     """
 
     def __init__(
-        self, write: Write, watch: Callable[[], None], joint_names: Sequence[str], **options: Any
+        self,
+        write: Write,
+        watch: Callable[[], None],
+        joint_names: Sequence[str],
+        recorded: Sequence[Topic] = topics.ALL,
+        graph: Mapping[str, NodeTopics] = topics.NODES,
+        foreign: Collection[str] = (),
+        patient: bool = False,
+        **options: Any,
     ) -> None:
         super().__init__("conductor", **options)
+        self._graph, self._foreign, self._patient = graph, foreign, patient
         self._joint_names = joint_names
-        self._recorder = Recorder(self, write)
+        self._recorder = Recorder(self, write, recorded)
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}
@@ -70,12 +86,12 @@ class Conductor(Node):
             self._take_status,
             qos_profile(topics.DIAGNOSTICS.qos),
         )
-        self._roll_call = RollCall(self, topics.NODES)
+        self._roll_call = RollCall(self, graph, foreign, graph=graph)
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
 
     def broadcast(self, vehicle: Vehicle, lockstep: bool) -> None:
-        """From now on publish what viewers want, from the messages that are recorded anyway."""
+        """From now on publish /tf and robot_description from the recorded messages."""
         states = StateBroadcaster(self, vehicle, lockstep)
         self._recorder.receivers.update(states.receivers)
         self._end = (*LOOP_END, topics.TF)
@@ -85,8 +101,8 @@ class Conductor(Node):
         """Newest simulation time, ns."""
         return self._recorder.stamp
 
-    def lead(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
-        """Bring the run to its first tick, send the goal and let time go."""
+    def conduct(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
+        """Bring the run to its first tick, send the goal and start time."""
         self._recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
         self._call(spinner, self._start, Trigger.Request(), "plant/start")
@@ -101,7 +117,7 @@ class Conductor(Node):
         self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
 
     def arrived(self, end: int) -> bool:
-        """Whether the plant stands at `end` and the answers of its last tick are recorded."""
+        """Whether the plant has reached `end` and the answers to its last tick are recorded."""
         newest = self._recorder.newest
         if self.stamp < end:
             self._arrival = None
@@ -120,15 +136,20 @@ class Conductor(Node):
         self._await(
             spinner,
             lambda: not self._roll_call.poll(),
-            START_PATIENCE_S,
-            lambda: _told(self._roll_call.poll()),
+            math.inf if self._patient else START_PATIENCE_S,
+            lambda: _missing(self._roll_call.poll()),
         )
+        if self._foreign:  # nobody knows whether these have found their listeners
+            settled = time.monotonic() + FOREIGN_SETTLE_S
+            while time.monotonic() < settled:
+                self._watch()
+                spinner.spin_once(0.05)
 
     def _silent(self) -> list[str]:
         newest = self._recorder.newest
         return [
             node
-            for node, own in topics.NODES.items()
+            for node, own in self._graph.items()
             if all(topic.name not in newest for topic in own.outputs)
         ]
 
@@ -147,7 +168,7 @@ class Conductor(Node):
         self._faults.clear()
         goal_id = UUID(
             uuid=list(uuid.uuid4().bytes)
-        )  # one for all: no second goal where asked again
+        )  # the same for every repetition, so that no second goal is created
         request = Request(
             lambda: self._client.send_goal_async(message, self._take_feedback, goal_id),
             self._client.server_is_ready,
@@ -155,7 +176,7 @@ class Conductor(Node):
         handle = self._answer_to(spinner, request, f"motion_planner: {action.name}")
         if not handle.accepted:
             reason = self._reason(spinner)
-            # A server refuses an id that it holds already: it took the goal when first asked.
+            # A server refuses an id that it already has: it accepted the goal the first time.
             if reason or request.times_asked == 1:
                 raise RunError(f"the planner rejected the goal: {reason or 'no reason given'}")
         self.goal_handle = handle
@@ -199,7 +220,7 @@ class Conductor(Node):
             if spinner.done.done():
                 raise RunError("stopped before the run began")
             if time.monotonic() > deadline:
-                raise RunError(f"waited {patience:.0f} s in vain for: {lack()}")
+                raise RunError(f"timed out after {patience:.0f} s waiting for: {lack()}")
             spinner.spin_once(0.05)
 
     def _take_status(self, msg: Any) -> None:
@@ -214,14 +235,14 @@ class Conductor(Node):
         self.result, self.result_status = answer.result().result, answer.result().status
 
     def progress(self) -> str:
-        """One line on where the run stands."""
+        """One line on the progress of the run."""
         text = f"t = {to_seconds(self.stamp):6.1f} s"
         if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
             text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
         return text
 
 
-def _told(lacks: dict[str, str]) -> str:
-    """Who is waited for; a node that is not up is the reason why the others lack its topics."""
-    dumb = {node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER)}
-    return "; ".join(f"{node}: {lack}" for node, lack in (dumb or lacks).items())
+def _missing(lacks: dict[str, str]) -> str:
+    """Who is missing; a node that is not up is the reason why the others lack its topics."""
+    absent = {node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER)}
+    return "; ".join(f"{node}: {lack}" for node, lack in (absent or lacks).items())

@@ -1,4 +1,4 @@
-"""The parameters of each node of a run, from the scenario; as a file for nodes of their own."""
+"""The parameters of each node of a run, from the scenario; also as a file."""
 
 from pathlib import Path
 from typing import Any

@@ -1,4 +1,4 @@
-"""The nodes of a run as processes of their own: command line, log file, clean end."""
+"""The nodes of a run as separate processes: command line, log file, clean shutdown."""
 
 import os
 import signal
@@ -10,7 +10,7 @@ from pathlib import Path
 from uvms_bringup.errors import RunError
 
 PATIENCE_S = 10.0
-"""Wall time that a node gets to end by itself."""
+"""Wall time that a node has to shut down by itself."""
 
 
 def node_command(
@@ -26,11 +26,11 @@ def node_command(
     """
     command = [sys.executable, "-m", "uvms_core.ros.main", node or role]
     command += ["--ros-args", "-r", f"__node:={role}", "--params-file", str(parameter_file)]
-    return command + (["-r", f"__ns:={namespace}"] if namespace else [])
+    return command + (["-r", f"__ns:=/{namespace}"] if namespace else [])
 
 
 class NodeProcesses:
-    """Starts nodes as processes, tells when one dies, and ends them."""
+    """Starts nodes as processes, detects when one dies, and stops them."""
 
     def __init__(self, log_folder: Path, environment: Mapping[str, str]) -> None:
         self._log_folder = log_folder
@@ -39,7 +39,7 @@ class NodeProcesses:
         log_folder.mkdir(parents=True, exist_ok=True)
 
     def start(self, node: str, command: Sequence[str]) -> None:
-        """Start a node; what it prints goes to a file of its own."""
+        """Start a node; its output goes to a log file of its own."""
         with self.log_of(node).open("wb") as log:
             self._processes[node] = subprocess.Popen(
                 command,
@@ -47,7 +47,7 @@ class NodeProcesses:
                 stderr=subprocess.STDOUT,
                 stdin=subprocess.DEVNULL,
                 env=self._environment,
-                start_new_session=True,  # Ctrl-C reaches the parent alone, which ends the nodes
+                start_new_session=True,  # Ctrl-C reaches only the parent, which stops the nodes
             )
 
     def log_of(self, node: str) -> Path:
@@ -55,14 +55,14 @@ class NodeProcesses:
         return self._log_folder / f"{node}.log"
 
     def check(self) -> None:
-        """Raise RunError if a node has died, with the end of what it printed."""
+        """Raise RunError if a node has died, with the end of its output."""
         for node, process in self._processes.items():
             if process.poll() is not None:
                 tail = "\n".join(self.log_of(node).read_text(errors="replace").splitlines()[-8:])
                 raise RunError(f"node {node} ended with code {process.returncode}:\n{tail}")
 
     def stop(self) -> None:
-        """End all nodes: SIGINT first, SIGKILL for one that does not listen."""
+        """Stop all nodes: SIGINT first, then SIGKILL for any that ignores it."""
         for process in self._processes.values():
             if process.poll() is None:
                 process.send_signal(signal.SIGINT)
@@ -75,7 +75,7 @@ class NodeProcesses:
 
 
 def environment(log_folder: Path) -> dict[str, str]:
-    """Environment of a run's processes: loopback only, and a domain of its own if none is set."""
+    """Environment of a run's processes: loopback only, and its own domain if none is set."""
     values = dict(os.environ)
     values.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     values.setdefault("ROS_DOMAIN_ID", str(1 + os.getpid() % 100))

@@ -1,6 +1,6 @@
-"""Records every topic of a run as it is on the wire: raw CDR, stamped with simulation time."""
+"""Records every topic of a run as raw CDR, stamped with simulation time."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from struct import unpack_from
 
 from rclpy.node import Node
@@ -20,7 +20,7 @@ COUNT_SIZE = 4
 
 
 class Recorder:
-    """Subscribes to all topics of the table.
+    """Subscribes to all topics of a run.
 
     The hidden topics of the planner's actions are left out: they hold random goal ids, so that no
     two runs were alike, and mcap_ros2 refuses the name of a feedback's type. What a feedback says
@@ -28,16 +28,17 @@ class Recorder:
 
     Args:
         node: whose subscriptions these are.
+        recorded: the run's topics, `topics.of(vehicle)`.
         write: takes (topic, type, qos in YAML, stamp in ns, CDR bytes), as `LogWriter.write`.
     """
 
-    def __init__(self, node: Node, write: Write) -> None:
+    def __init__(self, node: Node, write: Write, recorded: Sequence[Topic]) -> None:
         self._write = write
         self.stamp = 0
         self.on_clock: Callable[[], None] = lambda: None
         self.newest: dict[str, int] = {}
-        self.receivers: dict[str, Callable[[bytes], None]] = {}  # others who want a topic's bytes
-        for topic in topics.ALL:
+        self.receivers: dict[str, Callable[[bytes], None]] = {}  # further consumers
+        for topic in recorded:
             self._subscribe(node, topic)
 
     def _subscribe(self, node: Node, topic: Topic) -> None:

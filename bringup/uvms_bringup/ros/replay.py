@@ -1,9 +1,8 @@
-"""`uvms replay`: publishes a log again with /clock, or feeds one node with its recorded inputs."""
+"""`uvms replay`: publishes a log again with /clock, or replays it into one node."""
 
 import math
 import os
 import time
-from collections.abc import Callable
 from pathlib import Path
 
 from rclpy.duration import Duration
@@ -16,17 +15,18 @@ from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.schema import qos_from_yaml
 from uvms_bringup.errors import RunError
 from uvms_bringup.progress import ProgressLine
+from uvms_bringup.ros.metronome import Metronome
+from uvms_bringup.ros.node_replay import replay_into
 from uvms_bringup.ros.recorder import stamp_of
 from uvms_core import topics
 from uvms_core.ros.convert import interface_class
 from uvms_core.ros.node import qos_profile
 from uvms_core.ros.spin import Spinner, start
-from uvms_core.signals import to_seconds
 
 DISCOVERY_S = 3.5
-"""Wall time that others get at least to find the publishers: DDS announces itself every 3 s."""
+"""Least wall time for subscribers to find the publishers: DDS announces itself every 3 s."""
 DISCOVERY_PATIENCE_S = 8.0
-"""Wall time that they get at most, and that listeners get to take the last messages."""
+"""Most wall time for that, and for subscribers to take the last messages."""
 LEAST_SLEEP_S = 1e-3
 MESSAGES_A_SPIN = 200
 
@@ -41,15 +41,15 @@ def replay(
 
     Args:
         log: MCAP file of a run.
-        into: node to feed with its recorded inputs; None: publish everything.
-        rate: speed against real time; 0: as fast as possible. None: 1, or 0 when feeding a node.
-        output: folder for what the fed node answers; None: beside the log.
+        into: node to replay its recorded inputs into; None: publish everything.
+        rate: speed against real time; 0: as fast as possible. None: 1, or 0 with `into`.
+        output: folder for what that node answers; None: beside the log.
 
     Raises:
         RunError: the rate is negative or not finite, there is no such node, or it does not answer.
         LogError: the log cannot be read or lacks what is needed.
     """
-    if rate is not None and not 0.0 <= rate < math.inf:  # which nan is not either
+    if rate is not None and not 0.0 <= rate < math.inf:  # refuses nan, too
         raise RunError(f"--rate {rate:g}: choose 0 (as fast as possible) or a finite factor above")
     if into is not None and into not in topics.NODES:
         raise RunError(f"--into {into!r}: choose one of {', '.join(topics.NODES)}")
@@ -57,10 +57,8 @@ def replay(
     if run.fault:
         print(f"{run.path}: {run.fault}; going on with what is whole", flush=True)
     if into is not None:
-        from uvms_bringup.ros.feed import feed
-
         folder = Path(output) if output is not None else run.path.parent / f"replay-{into}"
-        return feed(run, into, rate or 0.0, folder)
+        return replay_into(run, into, rate or 0.0, folder)
     return publish(run, 1.0 if rate is None else rate)
 
 
@@ -94,41 +92,24 @@ class Player(Node):
             publisher.publish(data)
 
     def found_all(self) -> bool:
-        """Whether every listener that the graph shows has been found."""
+        """Whether every subscriber in the graph has been matched."""
         return all(
             publisher.get_subscription_count() >= self.count_subscribers(name)
             for name, publisher in self._publishers_of.items()
         )
 
     def flush(self) -> None:
-        """Wait until the listeners have what is under way."""
+        """Wait until the subscribers have acknowledged what is in flight."""
         for publisher in self._publishers_of.values():
             publisher.wait_for_all_acked(Duration(seconds=DISCOVERY_PATIENCE_S))
 
 
-def _find_listeners(player: Player, spinner: Spinner) -> None:
-    # What is sent before a listener is found is lost to it.
+def _await_subscribers(player: Player, spinner: Spinner) -> None:
+    # Messages published before a subscriber is matched are lost to it.
     end = time.monotonic() + DISCOVERY_PATIENCE_S
     spinner.spin_for(Future(), DISCOVERY_S)
     while not player.found_all() and time.monotonic() < end and not spinner.done.done():
         spinner.spin_for(Future(), 0.05)
-
-
-class Metronome:
-    """Keeps simulation time to wall time times a rate; rate 0 does not wait."""
-
-    def __init__(self, rate: float, clock: Callable[[], float] = time.monotonic) -> None:
-        self._rate, self._clock = rate, clock
-        self._origin: tuple[float, int] | None = None
-
-    def ahead(self, stamp: int) -> float:
-        """Wall seconds until a stamp is due; none for the first one."""
-        if self._origin is None:
-            self._origin = self._clock(), stamp
-        if self._rate == 0.0:
-            return 0.0
-        began, first = self._origin
-        return began + to_seconds(stamp - first) / self._rate - self._clock()
 
 
 def publish(run: RunLog, rate: float) -> int:
@@ -141,7 +122,7 @@ def publish(run: RunLog, rate: float) -> int:
         print(f"left out: {lack}", flush=True)
     line = ProgressLine(_end_of(run))
     try:
-        _find_listeners(player, spinner)
+        _await_subscribers(player, spinner)
         return _publish_all(run, player, spinner, Metronome(rate), line)
     finally:
         line.end()

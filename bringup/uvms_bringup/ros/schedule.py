@@ -36,15 +36,18 @@ class TickOf:
         return -(-stamp // self._period) * self._period
 
 
-def schedule(run: RunLog, node: str, tick_of: TickOf) -> list[TickRecord]:
+def schedule(
+    run: RunLog, node: str, tick_of: TickOf, wanted: topics.NodeTopics | None = None
+) -> list[TickRecord]:
     """The ticks of a node, in order: those in which it gave something in the recorded run.
 
-    Inputs belong to the first tick at or after their stamp.
+    Inputs belong to the first tick at or after their stamp. `wanted` are the node's topics with the
+    vehicle of the run; None: those with the built-in sensors.
 
     Raises:
         LogError: the log lacks one of the node's inputs, or all of its outputs.
     """
-    wanted = topics.NODES[node]
+    wanted = wanted or topics.NODES[node]
     inputs = [run.full_name(topic) for topic in wanted.inputs]
     outputs = [run.full_name(topic) for topic in wanted.outputs]
     lacking = [name for name in inputs if name not in run.topics]

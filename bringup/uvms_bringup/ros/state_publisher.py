@@ -49,7 +49,7 @@ class StateBroadcaster:
         ]
 
     def _receiver(self, topic: Topic, vehicle: Vehicle) -> Callable[[bytes], None]:
-        """What takes the bytes of a source; a message that is refused gives no transforms."""
+        """Callback for the bytes of a source; a refused message yields no transforms."""
         names, wire = vehicle.joint_names, codec(topic.type)
 
         def receive(data: bytes) -> None:

@@ -11,6 +11,7 @@ from uvms_control.config import (
 )
 from uvms_control.controller import Controller
 from uvms_control.errors import AllocationError, ControlError, ControlSetupError
+from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_control.reference import ReferenceSample, sample_reference
 from uvms_control.s_surface import SSurface, lyapunov, sigmoid, sigmoid_series
 from uvms_control.tracking_error import TrackingError, tracking_error
@@ -18,12 +19,14 @@ from uvms_control.vehicle_controller import VehicleController
 
 __all__ = [
     "AllocationError",
+    "AllocationMethod",
     "AllocatorConfig",
     "ArmControlConfig",
     "ArmController",
     "CompensationConfig",
     "ControlConfig",
     "ControlError",
+    "ControlLaw",
     "ControlSetupError",
     "Controller",
     "ReferenceSample",

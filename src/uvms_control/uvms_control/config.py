@@ -1,10 +1,13 @@
 """Parameters of the controller and of the thrust allocator, each with unit, bounds and meaning."""
 
-from typing import Annotated
+from typing import Annotated, ClassVar
 
 from pydantic import Field
 
+from uvms_control.interfaces import AllocationMethod, ControlLaw
+from uvms_core import registry
 from uvms_core.config import Config
+from uvms_core.plugin import PluginConfig, Slot
 
 Positive = Annotated[float, Field(gt=0.0, allow_inf_nan=False)]
 NotNegative = Annotated[float, Field(ge=0.0, allow_inf_nan=False)]
@@ -100,9 +103,17 @@ class CompensationConfig(Config):
     )
 
 
-class ControlConfig(Config):
+class ControlConfig(PluginConfig):
     """Vehicle and arm controller."""
 
+    slot: ClassVar[Slot] = Slot(registry.CONTROLLERS, "law", ControlLaw)
+
+    law: str = Field(
+        default="s_surface",
+        description="control law: s_surface (eq. (22) and (19)), that of an installed package, or"
+        " a class as my_package.my_module:MyLaw; one that is not s_surface uses of this section"
+        " what it likes",
+    )
     enabled: bool = Field(
         default=True,
         description="control the vehicle; false leaves it free (zero wrench), the arm still moves",
@@ -119,9 +130,16 @@ class ControlConfig(Config):
     compensation: CompensationConfig = CompensationConfig()
 
 
-class AllocatorConfig(Config):
+class AllocatorConfig(PluginConfig):
     """Bounded least-squares thrust allocation."""
 
+    slot: ClassVar[Slot] = Slot(registry.ALLOCATORS, "method", AllocationMethod)
+
+    method: str = Field(
+        default="weighted_least_squares",
+        description="allocation method: weighted_least_squares, that of an installed package, or a"
+        " class as my_package.my_module:MyAllocator",
+    )
     weights: SixNotNegative = Field(
         default=(1.0, 1.0, 1.0, 10.0, 10.0, 3.0),
         description="weight of the error on X, Y, Z, K, M, N as a share of the authority of each "

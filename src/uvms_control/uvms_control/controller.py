@@ -3,15 +3,13 @@
 import numpy as np
 
 from uvms_control.arm_controller import ArmController, floating_inertia
-from uvms_control.checks import checked, checked_quaternion
 from uvms_control.compensation import EndEffectorCompensation, JointCorrection
 from uvms_control.config import ControlConfig
-from uvms_control.reference import ReferenceSample, check_reference, sample_reference
+from uvms_control.reference import ReferenceSample, sample_reference
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
-from uvms_control.vehicle_data import effort_limits, joint_limits
-from uvms_core.errors import SignalError
-from uvms_core.freshness import check_age
+from uvms_control.vehicle_data import effort_limits
+from uvms_core import checks
 from uvms_core.signals import (
     Array,
     JointCommand,
@@ -21,7 +19,7 @@ from uvms_core.signals import (
     Wrench,
     to_seconds,
 )
-from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_dynamics import build_model, inverse_dynamics, joint_passive_torque, mass_matrix
 
 
@@ -32,6 +30,7 @@ class Controller:
         """`vehicle` from `uvms_dynamics.load_vehicle`."""
         self._config = config
         self._n = vehicle.n_joints
+        self._joint_names = vehicle.joint_names
         self._model = build_model(vehicle)
         self.vehicle = VehicleController(self._model, config.vehicle)
         lower, upper = joint_limits(vehicle)
@@ -43,7 +42,6 @@ class Controller:
     def reset(self) -> None:
         """Start afresh, as before the first step."""
         self._stamp: int | None = None
-        self._reference: Reference | None = None
         self.vehicle.reset()
         self.arm.reset()
         self.compensation.reset()
@@ -147,19 +145,12 @@ class Controller:
         disturbance: Wrench | None,
         reference: Reference,
     ) -> None:
-        if self._stamp is not None and odometry.stamp <= self._stamp:
-            raise SignalError(
-                f"odometry: stamp {odometry.stamp} ns, expected one after {self._stamp} ns"
-            )
-        check_age("joint_states", joints.stamp, odometry.stamp)
-        checked("odometry.position", odometry.position, (3,))
-        checked_quaternion("odometry.quaternion", odometry.quaternion)
-        checked("odometry.nu", odometry.nu, (6,))
-        checked("joint_states.position", joints.position, (self._n,))
-        checked("joint_states.velocity", joints.velocity, (self._n,))
+        if self._stamp is not None:
+            checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
+        checks.age("joint_states", joints.stamp, odometry.stamp)
+        checks.check("odometry", odometry)
+        checks.check("joint_states", joints, n=self._joint_names)
         if disturbance is not None:
-            check_age("disturbance", disturbance.stamp, odometry.stamp)
-            checked("disturbance", disturbance.wrench, (6,))
-        if reference is not self._reference:
-            check_reference(reference, self._n)
-            self._reference = reference
+            checks.age("disturbance", disturbance.stamp, odometry.stamp)
+            checks.check("disturbance", disturbance)
+        checks.check("reference", reference, n=self._joint_names)

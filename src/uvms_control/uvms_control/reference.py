@@ -10,8 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_control.checks import checked
-from uvms_core.errors import SignalError
 from uvms_core.signals import Array, Reference, to_nanoseconds, to_seconds
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
@@ -27,7 +25,7 @@ SMALL_ANGLE = 1e-4  # rad; below it the series of the right Jacobian are exact t
 
 @dataclass(frozen=True)
 class ReferenceSample:
-    """Where vehicle and joints shall be at one instant; frames as in `Reference`."""
+    """Where vehicle and joints are to be at one instant; frames as in `Reference`."""
 
     position: Array  # (3,)
     quaternion: Array  # (4,)
@@ -37,27 +35,6 @@ class ReferenceSample:
     q_dot: Array  # (n,)
     q_ddot: Array  # (n,)
     end_effector: Array  # (3,)
-
-
-def check_reference(reference: Reference, n_joints: int) -> None:
-    """SignalError, naming the value, unless all parts of the reference fit together."""
-    k = np.size(reference.times)
-    if k == 0:
-        raise SignalError("reference.times: empty, expected at least one sample")
-    times = checked("reference.times", reference.times, (k,))
-    if not (np.diff(times) > 0.0).all() or times[0] != 0.0:
-        raise SignalError(f"reference.times: {times}, expected to increase from 0")
-    for name, width in (("position", 3), ("quaternion", 4), ("nu", 6), ("nu_dot", 6)):
-        checked(f"reference.{name}", getattr(reference, name), (k, width))
-    for name in ("q", "q_dot", "q_ddot"):
-        checked(f"reference.{name}", getattr(reference, name), (k, n_joints))
-    checked("reference.end_effector", reference.end_effector, (k, 3))
-    lengths = np.linalg.norm(reference.quaternion, axis=1)
-    if np.any(np.abs(lengths - 1.0) > 1e-3):
-        worst = int(np.argmax(np.abs(lengths - 1.0)))
-        raise SignalError(
-            f"reference.quaternion[{worst}]: length {lengths[worst]:.6g}, expected 1 within 0.001"
-        )
 
 
 def sample_reference(reference: Reference, stamp: int) -> ReferenceSample:

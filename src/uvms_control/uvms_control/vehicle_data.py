@@ -6,13 +6,6 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 
 
-def joint_limits(vehicle: Vehicle) -> tuple[Array, Array]:
-    """Lower and upper joint limits (n,), (n,) in rad."""
-    joints = vehicle.arm.joints
-    lower = np.radians([joint.lower_deg for joint in joints])
-    return lower, np.radians([joint.upper_deg for joint in joints])
-
-
 def effort_limits(vehicle: Vehicle) -> Array:
     """Largest joint torques (n,) in N m."""
     return np.array([joint.effort_limit_nm for joint in vehicle.arm.joints])

@@ -4,9 +4,9 @@ A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS pa
 from its fields, so that a gain has one name, one default and one description.
 """
 
-from typing import Any, get_args
+from typing import get_args
 
-from pydantic import BaseModel, ConfigDict, Field, ValidationError
+from pydantic import BaseModel, ConfigDict, ValidationError
 
 from uvms_core.errors import ConfigError, UvmsError
 
@@ -20,14 +20,10 @@ class Config(BaseModel):
         extra="forbid", frozen=True, validate_default=True, allow_inf_nan=False
     )
 
-
-class PluginConfig(Config):
-    """Base of a section whose part may be replaced: the parameters that only the part knows."""
-
-    parameters: Any = Field(
-        default_factory=dict,
-        description="what only the chosen part knows, by name (its class lists them as Parameters)",
-    )
+    @classmethod
+    def field_model(cls, name: str) -> type[BaseModel] | None:
+        """The model that a field of this name holds, alone or in a sequence; None for others."""
+        return _inner_model(getattr(cls.model_fields.get(name), "annotation", None))
 
 
 def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
@@ -58,8 +54,8 @@ def _explain_one(item, what: str, model: type[BaseModel]) -> str:
 
 def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
     for part in path:
-        field = model.model_fields.get(str(part))
-        model = _inner_model(getattr(field, "annotation", None)) or model
+        inner = model.field_model(str(part)) if issubclass(model, Config) else None
+        model = inner or model
     return sorted(model.model_fields)
 
 

@@ -5,17 +5,13 @@ one that has no entry. Nodes, in-process loop and command line all look here, so
 the same everywhere. Nothing is imported before it is asked for.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cache
 from importlib import import_module
-from importlib.metadata import EntryPoint, entry_points
-from typing import Any, TypeVar
+from importlib.metadata import EntryPoint, distributions
+from typing import Any
 
-from uvms_core.config import Config, PluginConfig, validated
 from uvms_core.errors import PluginError
-
-P = TypeVar("P", bound=PluginConfig)
 
 
 @dataclass(frozen=True)
@@ -85,42 +81,11 @@ def load(door: Door, name: str) -> Any:
         found: Any = import_module(module)
         for part in attribute.split(".") if attribute else ():
             found = getattr(found, part)
-    except (ImportError, AttributeError) as fault:
-        raise PluginError(f"{door.what} {name!r}: cannot import {path}: {fault}") from fault
+    except Exception as fault:  # a module of the user's may raise anything
+        raise PluginError(
+            f"{door.what} {name!r}: cannot import {path}: {type(fault).__name__}: {fault}"
+        ) from fault
     return found
-
-
-def create(door: Door, name: str, config: P, make: Callable[[Any, P], Any]) -> Any:
-    """A part with its configuration.
-
-    A class with an inner configuration `Parameters` finds `config.parameters` validated as such;
-    one without takes no parameters.
-
-    Args:
-        door: kind of the part.
-        name: entry point or `module:Class`.
-        config: its section; `parameters` holds what only this part knows.
-        make: calls the class, which is its first argument, with the configuration, its second.
-
-    Raises:
-        PluginError: the part cannot be found, or takes no parameters.
-        ConfigError: its parameters are wrong; the message names field, value and bound.
-    """
-    cls = load(door, name)
-    return make(cls, with_parameters(door, name, cls, config))
-
-
-def with_parameters(door: Door, name: str, cls: Any, config: P) -> P:
-    """The configuration with `parameters` as the part's own `Parameters`; raises as `create`."""
-    model: type[Config] | None = getattr(cls, "Parameters", None)
-    given = config.parameters
-    if model is None:
-        if given:
-            unknown = ", ".join(sorted(given))
-            raise PluginError(f"{door.what} {name!r} takes no parameters; got {unknown}")
-        return config
-    own = given if isinstance(given, model) else validated(model, given, f"parameters of {name}")
-    return config.model_copy(update={"parameters": own})
 
 
 def _is_path(name: str) -> bool:
@@ -133,6 +98,13 @@ def _is_path(name: str) -> bool:
 def _entries(group: str) -> dict[str, EntryPoint]:
     """Entry points of a group by name; of several of one name the first on the path counts."""
     found: dict[str, EntryPoint] = {}
-    for entry in entry_points(group=group):
-        found.setdefault(entry.name, entry)
+    for entry in _all_entries():
+        if entry.group == group:
+            found.setdefault(entry.name, entry)
     return found
+
+
+@cache
+def _all_entries() -> tuple[EntryPoint, ...]:
+    """Those of all installed packages, read once: that takes longer than all the rest."""
+    return tuple(entry for package in distributions() for entry in package.entry_points)

@@ -1,18 +1,62 @@
-"""The signals between the parts of the system, free of ROS: one frozen dataclass per topic.
+"""The signals between the parts of the system, free of ROS: one frozen dataclass each.
 
 Stamps are integer nanoseconds of simulation time, so that they compare exactly. Vectors are
 float64 arrays in SI units. Poses are of the body frame (forward-starboard-down, `base_link_fsd`)
 in the world frame (north-east-down, `map_ned`); quaternions are (x, y, z, w), body to world.
 `nu` is Fossen's nu = (u, v, w, p, q, r) in the body frame. Wrenches are (X, Y, Z, K, M, N) in the
 body frame, about its origin.
+
+The annotations of the fields are the rules by which `uvms_core.checks` checks a signal; plain
+floats must be finite.
 """
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Shape:
+    """Rule of an array: float64, finite, of these sizes.
+
+    A size is a number or a letter. A letter means the same number, at least 1, wherever it occurs
+    in a signal: `n` joints, `m` thrusters, `k` samples over time.
+
+    Args:
+        sizes: of each dimension.
+        unit: the vector, or each row, has unit length.
+        increasing: the values increase from 0.
+    """
+
+    sizes: tuple[int | str, ...]
+    unit: bool = False
+    increasing: bool = False
+
+
+@dataclass(frozen=True)
+class OnlyIf:
+    """Rule of a number that must be finite only where another field of the signal is true."""
+
+    field: str
+
+
+Array3 = Annotated[Array, Shape((3,))]
+Array6 = Annotated[Array, Shape((6,))]
+Array3x3 = Annotated[Array, Shape((3, 3))]
+Array6x6 = Annotated[Array, Shape((6, 6))]
+Quaternion = Annotated[Array, Shape((4,), unit=True)]
+ByJoint = Annotated[Array, Shape(("n",))]
+ByThruster = Annotated[Array, Shape(("m",))]
+Times = Annotated[Array, Shape(("k",), increasing=True)]
+Array3s = Annotated[Array, Shape(("k", 3))]
+Array6s = Annotated[Array, Shape(("k", 6))]
+Quaternions = Annotated[Array, Shape(("k", 4), unit=True)]
+ByJoints = Annotated[Array, Shape(("k", "n"))]
+NumberWithFix = Annotated[float, OnlyIf("fix")]
 
 NANOSECONDS = 1_000_000_000
 
@@ -32,12 +76,12 @@ class ImuSample:
     """Gyrocompass and inertial unit; its axes are parallel to the body frame's."""
 
     stamp: int
-    quaternion: Array  # (4,) body to map_ned
-    angular_velocity: Array  # (3,) rad/s
-    linear_acceleration: Array  # (3,) m/s^2, specific force (a - g) at the unit's own position
-    orientation_covariance: Array  # (3, 3) rad^2, about the body axes
-    angular_velocity_covariance: Array  # (3, 3)
-    linear_acceleration_covariance: Array  # (3, 3)
+    quaternion: Quaternion  # body to map_ned
+    angular_velocity: Array3  # rad/s
+    linear_acceleration: Array3  # m/s^2, specific force (a - g) at the unit's own position
+    orientation_covariance: Array3x3  # rad^2, about the body axes
+    angular_velocity_covariance: Array3x3
+    linear_acceleration_covariance: Array3x3
 
 
 @dataclass(frozen=True)
@@ -45,8 +89,8 @@ class DvlSample:
     """Doppler velocity log: velocity over ground of the transducer, body axes."""
 
     stamp: int
-    velocity: Array  # (3,) m/s
-    covariance: Array  # (3, 3)
+    velocity: Array3  # m/s
+    covariance: Array3x3
 
 
 @dataclass(frozen=True)
@@ -64,10 +108,10 @@ class GpsSample:
 
     stamp: int
     fix: bool
-    latitude_deg: float
-    longitude_deg: float
-    altitude: float  # m above the surface
-    covariance: Array  # (3, 3) m^2, north-east-down
+    latitude_deg: NumberWithFix
+    longitude_deg: NumberWithFix
+    altitude: NumberWithFix  # m above the surface
+    covariance: Array3x3  # m^2, north-east-down
 
 
 @dataclass(frozen=True)
@@ -75,9 +119,9 @@ class JointStates:
     """Joint encoders (or the true joints, where the topic says so)."""
 
     stamp: int
-    position: Array  # (n,) rad
-    velocity: Array  # (n,) rad/s
-    effort: Array  # (n,) N m
+    position: ByJoint  # rad
+    velocity: ByJoint  # rad/s
+    effort: ByJoint  # N m
 
 
 @dataclass(frozen=True)
@@ -85,11 +129,11 @@ class Odometry:
     """Pose and velocity of the vehicle, estimated or true."""
 
     stamp: int
-    position: Array  # (3,) m, map_ned
-    quaternion: Array  # (4,) body to map_ned
-    nu: Array  # (6,) body frame, over ground
-    pose_covariance: Array  # (6, 6) position in map_ned, rotation about the map_ned axes
-    twist_covariance: Array  # (6, 6) body frame
+    position: Array3  # m, map_ned
+    quaternion: Quaternion  # body to map_ned
+    nu: Array6  # body frame, over ground
+    pose_covariance: Array6x6  # position in map_ned, rotation about the map_ned axes
+    twist_covariance: Array6x6  # body frame
 
 
 @dataclass(frozen=True)
@@ -97,7 +141,7 @@ class Wrench:
     """Force and moment in the body frame, about its origin."""
 
     stamp: int
-    wrench: Array  # (6,)
+    wrench: Array6
 
 
 @dataclass(frozen=True)
@@ -105,25 +149,25 @@ class DisturbanceBudget:
     """What acts on the vehicle besides the thrusters, each part once."""
 
     stamp: int
-    restoring: Array  # (6,) weight and buoyancy of hull and links, eq. (13)
-    coupling: Array  # (6,) reaction of the arm at its base without weight and buoyancy, (14)-(15)
-    external: Array  # (6,) what is left
+    restoring: Array6  # weight and buoyancy of hull and links, eq. (13)
+    coupling: Array6  # reaction of the arm at its base without weight and buoyancy, (14)-(15)
+    external: Array6  # what is left
 
 
 @dataclass(frozen=True)
 class Reference:
-    """Where vehicle and joints shall be over the planner's next step, sampled at k times."""
+    """Where vehicle and joints are to be over the planner's next step, sampled at k times."""
 
     stamp: int  # of the first sample
-    times: Array  # (k,) s after the stamp, increasing, from 0
-    position: Array  # (k, 3)
-    quaternion: Array  # (k, 4)
-    nu: Array  # (k, 6)
-    nu_dot: Array  # (k, 6)
-    q: Array  # (k, n)
-    q_dot: Array  # (k, n)
-    q_ddot: Array  # (k, n)
-    end_effector: Array  # (k, 3) where that puts the end effector, map_ned
+    times: Times  # s after the stamp, increasing, from 0
+    position: Array3s
+    quaternion: Quaternions
+    nu: Array6s
+    nu_dot: Array6s
+    q: ByJoints
+    q_dot: ByJoints
+    q_ddot: ByJoints
+    end_effector: Array3s  # where that puts the end effector, map_ned
 
     @property
     def end(self) -> int:
@@ -133,18 +177,18 @@ class Reference:
 
 @dataclass(frozen=True)
 class JointCommand:
-    """Torque that each joint shall apply."""
+    """Torque that each joint is to apply."""
 
     stamp: int
-    effort: Array  # (n,) N m
+    effort: ByJoint  # N m
 
 
 @dataclass(frozen=True)
 class ThrusterCommand:
-    """Thrust that each thruster shall apply."""
+    """Thrust that each thruster is to apply."""
 
     stamp: int
-    thrust: Array  # (m,) N
+    thrust: ByThruster  # N
 
 
 @dataclass(frozen=True)
@@ -152,9 +196,9 @@ class Allocation:
     """What the allocator made of a commanded wrench."""
 
     stamp: int
-    thrust: Array  # (m,) N
-    achieved: Array  # (6,) wrench of these thrusts
-    residual: Array  # (6,) commanded minus achieved
+    thrust: ByThruster  # N
+    achieved: Array6  # wrench of these thrusts
+    residual: Array6  # commanded minus achieved
     saturated: NDArray[np.bool_]  # (m,)
 
 

@@ -8,4 +8,4 @@ class ObserverError(UvmsError):
 
 
 class NotAlignedError(ObserverError):
-    """The navigation filter has had no IMU sample yet, so that it has no attitude to start from."""
+    """The navigation filter has had no IMU sample yet, and so no attitude to start from."""

@@ -3,6 +3,7 @@
 from typing import Any
 
 from uvms_core.moved import moved
+from uvms_planner.choice import Choice, nearest_on_path
 from uvms_planner.config import (
     FitnessConfig,
     GeneticConfig,
@@ -11,11 +12,13 @@ from uvms_planner.config import (
     ProjectionConfig,
 )
 from uvms_planner.errors import GoalRejected, PlannerError
+from uvms_planner.interfaces import StepMethod
 from uvms_planner.path_spec import PathPhase, PathSpec, figure_9
 from uvms_planner.planner import MotionPlanner
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
 
 __all__ = [
+    "Choice",
     "FitnessConfig",
     "GeneticConfig",
     "GoalFeedback",
@@ -30,7 +33,9 @@ __all__ = [
     "PlannerStep",
     "ProjectionConfig",
     "StepDiagnostics",
+    "StepMethod",
     "figure_9",
+    "nearest_on_path",
 ]
 
 _MOVED = {

@@ -1,12 +1,13 @@
 """Every parameter of the motion planner, once, with unit, bound and meaning."""
 
-from typing import Literal
+from typing import ClassVar
 
 from pydantic import Field
 
+from uvms_core import registry
 from uvms_core.config import Config
-
-Method = Literal["genetic", "least_norm", "arm_only"]
+from uvms_core.plugin import PluginConfig, Slot
+from uvms_planner.interfaces import StepMethod
 
 
 class LimitsConfig(Config):
@@ -109,12 +110,16 @@ class GeneticConfig(Config):
     )
 
 
-class PlannerConfig(Config):
+class PlannerConfig(PluginConfig):
     """The motion planner."""
 
-    method: Method = Field(
+    slot: ClassVar[Slot] = Slot(registry.PLANNERS, "method", StepMethod)
+
+    method: str = Field(
         "genetic",
-        description="genetic (the paper's), least_norm (weighted pseudo-inverse) or arm_only",
+        description="how each step is chosen: genetic (the paper's), least_norm (weighted"
+        " pseudo-inverse), arm_only, that of an installed package, or a class as"
+        " my_package.my_module:MyMethod",
     )
     step_s: float = Field(0.5, gt=0, le=10.0, description="s, one planner step")
     sample_s: float = Field(0.05, gt=0, le=1.0, description="s, spacing of the reference's samples")

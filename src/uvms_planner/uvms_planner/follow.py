@@ -5,11 +5,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_core.signals import Array, to_nanoseconds, to_seconds
+from uvms_planner.choice import Choice
 from uvms_planner.joined_path import JoinedPath
 from uvms_planner.knot_motion import knot_motion
 from uvms_planner.problem import StepProblem
 from uvms_planner.segment import Knot, Samples, hermite, tool_positions
-from uvms_planner.solver import Choice, StepSolver
+from uvms_planner.solver import StepSolver
 
 
 @dataclass(frozen=True)

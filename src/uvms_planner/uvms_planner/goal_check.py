@@ -3,6 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from uvms_core.checks import is_unit
 from uvms_core.end_effector_path import EndEffectorPath, PathSample
 from uvms_core.signals import Array, PathGoal
 from uvms_dynamics.kernels.jit import kernel
@@ -15,7 +16,6 @@ from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project, within_tolerance
 from uvms_planner.solver import StepSolver
 
-UNIT_TOLERANCE = 1e-3
 SEARCH_ITERATIONS = 200
 
 
@@ -48,7 +48,7 @@ def check_path_goal(goal: PathGoal) -> None:
     if len(orientations):
         norms = np.linalg.norm(orientations, axis=1)
         row = int(np.argmax(np.abs(norms - 1.0)))
-        if abs(norms[row] - 1.0) > UNIT_TOLERANCE:
+        if not is_unit(norms[row] ** 2):
             raise GoalRejected(
                 f"path: orientations[{row}] has norm {norms[row]:.4g}, must be a unit quaternion"
             )

@@ -5,9 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_planner.config import LimitsConfig
-from uvms_planner.problem import VEHICLE
 
 PEAK_BRAKING = 1.5  # a smooth stop's greatest deceleration over its mean
 
@@ -26,10 +25,11 @@ class JointLimits:
     def of(vehicle: Vehicle) -> "JointLimits":
         """The limits in `vehicle`."""
         joints = vehicle.arm.joints
+        lower, upper = joint_limits(vehicle)
         return JointLimits(
             names=tuple(joint.name for joint in joints),
-            lower=np.deg2rad([joint.lower_deg for joint in joints]),
-            upper=np.deg2rad([joint.upper_deg for joint in joints]),
+            lower=lower,
+            upper=upper,
             rate=np.deg2rad([joint.rate_limit_deg_s for joint in joints]),
             acceleration=np.deg2rad([joint.acceleration_limit_deg_s2 for joint in joints]),
         )
@@ -86,14 +86,6 @@ class StepLimits:
     def violation(self, configuration: Array) -> Array:
         """How far (m,) a configuration lies beyond its bounds."""
         return np.maximum(self.lower - configuration, 0) + np.maximum(configuration - self.upper, 0)
-
-
-def frozen(bounds: tuple[Array, Array]) -> tuple[Array, Array]:
-    """The same bounds with the vehicle held still."""
-    lower, upper = bounds[0].copy(), bounds[1].copy()
-    lower[:VEHICLE] = 0.0
-    upper[:VEHICLE] = 0.0
-    return lower, upper
 
 
 def _stoppable(room: Array, jump: Array) -> Array:

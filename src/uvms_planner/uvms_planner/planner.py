@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uvms_core import checks
 from uvms_core.end_effector_path import EndEffectorPath, PathSample
 from uvms_core.errors import SignalError
 from uvms_core.signals import (
@@ -14,7 +15,6 @@ from uvms_core.signals import (
     PathGoal,
     Reference,
     to_nanoseconds,
-    to_seconds,
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import end_effector
@@ -51,6 +51,7 @@ class MotionPlanner:
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int):
         self._config = config
+        self._joint_names = vehicle.joint_names
         self._solver = StepSolver(vehicle, config, seed)
         self._step = to_nanoseconds(config.step_s)
         self._times = _sample_times(config)
@@ -198,23 +199,10 @@ class MotionPlanner:
         )
 
     def _check(self, stamp: int, odometry: Odometry, joints: JointStates) -> None:
-        if self._tick is not None and stamp <= self._tick:
-            raise SignalError(
-                f"motion planner: stamp {to_seconds(stamp):g} s does not follow"
-                f" {to_seconds(self._tick):g} s; stamps must increase"
-            )
-        count = self._solver.size - VEHICLE
-        for name, value, shape in (
-            ("odometry position", odometry.position, (3,)),
-            ("odometry quaternion", odometry.quaternion, (4,)),
-            ("joint position", joints.position, (count,)),
-        ):
-            if np.shape(value) != shape:
-                raise SignalError(
-                    f"motion planner: {name} has shape {np.shape(value)}, needed is {shape}"
-                )
-            if not np.all(np.isfinite(value)):
-                raise SignalError(f"motion planner: {name} = {value} is not finite")
+        if self._tick is not None:
+            checks.later("stamp", stamp, self._tick, "the last step's")
+        checks.check("odometry", odometry)
+        checks.check("joint_states", joints, n=self._joint_names)
 
 
 def _sample_times(config: PlannerConfig) -> Array:

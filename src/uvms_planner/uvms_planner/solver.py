@@ -1,55 +1,37 @@
-"""From one knot to the next: the strategies that choose an increment, on one footing.
+"""From one knot to the next: sets up the problem of one step and lets the method solve it.
 
-`genetic` is the paper's. `least_norm` (weighted pseudo-inverse, the smallest motion that follows
-the path) and `arm_only` (the same with the vehicle held still) are what it is compared with.
-All share the projection, the limits and the judgement.
+All methods share the projection, the limits and the cost of the problem; what differs is in the
+classes of `methods/`.
 """
-
-from dataclasses import dataclass
 
 import numpy as np
 
 from uvms_core.end_effector_path import PathSample
-from uvms_core.rng import generator
+from uvms_core.plugin import create
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
 from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_planner.choice import Choice
 from uvms_planner.config import PlannerConfig
 from uvms_planner.constraints import free_attitude
-from uvms_planner.fitness import judge, self_disturbance
-from uvms_planner.genetic import GeneticSettings, evolve
-from uvms_planner.limits import JointLimits, StepLimits, frozen
+from uvms_planner.fitness import self_disturbance
+from uvms_planner.interfaces import StepMethod
+from uvms_planner.limits import JointLimits, StepLimits
 from uvms_planner.problem import VEHICLE, StepProblem
-from uvms_planner.projection import project
-
-
-@dataclass(frozen=True)
-class Choice:
-    """What a strategy chose for one step, and how good it is."""
-
-    valid: bool  # whether the end effector is within e of the path
-    increment: Array  # (m,)
-    distance: float  # m, of the end effector from the path
-    angle: float  # rad, the same for the orientation; 0 without one
-    attitude_violation: float  # rad beyond the limits of eq. (17)
-    cost: float  # 1 / fitness, eq. (18) with the motion's costs
-    evaluations: int
-    feasible: int  # candidates within e and the attitude limits
-    discarded: int  # candidates not within e
 
 
 class StepSolver:
-    """Chooses the increment of the configuration for each step by `config.method`."""
+    """Chooses the increment of the configuration for each step by the method of `config`."""
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int):
         self.model: Model = build_model(vehicle)
         self.joints = JointLimits.of(vehicle)
         self.limits = StepLimits.of(self.joints, config.limits, config.step_s)
         self._config = config
-        self._seed = seed
-        self._settings = _settings(config)
-        self._readiness, self._motion_weights = _weights(self.limits, config)
+        self._method: StepMethod = create(config, vehicle, seed)
+        self._readiness = self._method.readiness(_readiness(self.limits, config))
+        self._motion_weights = _motion_weights(len(self.limits.reach), config)
 
     @property
     def size(self) -> int:
@@ -68,9 +50,8 @@ class StepSolver:
         `bounds` are the least and greatest increment; by default those of all limits.
         """
         config = self._config
-        lower, upper = bounds or self.limits.increments(configuration, previous)
-        if config.method == "arm_only":
-            lower, upper = frozen((lower, upper))
+        limits = bounds or self.limits.increments(configuration, previous)
+        lower, upper = self._method.bounds(*limits)
         oriented = target.quaternion is not None
         return StepProblem(
             configuration=configuration.copy(),
@@ -101,41 +82,12 @@ class StepSolver:
 
         Where nothing within the accelerations is on the path, the rates alone bound the step.
         """
-        choice = self._choose(problem, index)
+        choice = self._method.choose(problem, index)
         if choice.valid:
             return choice
-        bounds = self.limits.rate_increments(problem.configuration)
-        if self._config.method == "arm_only":
-            bounds = frozen(bounds)
-        return self._choose(problem._replace(lower=bounds[0], upper=bounds[1]), index)
-
-    def _choose(self, problem: StepProblem, index: int) -> Choice:
-        if self._config.method == "genetic":
-            return self._evolved(problem, index)
-        return self._least_norm(problem)
-
-    def _evolved(self, problem: StepProblem, index: int) -> Choice:
-        previous = problem.previous
-        seeds = np.array([previous, np.zeros_like(previous), 0.5 * previous])
-        rng = generator(self._seed, f"planner step {index}")
-        found, increment, violation, cost, discarded, feasible, evaluations = evolve(
-            self.model, problem, self._settings, seeds, rng
-        )
-        if not found:
-            return self._least_norm(problem)
-        distance, angle = project(self.model, problem, increment)
-        return Choice(
-            found, increment, distance, angle, violation, cost, evaluations, feasible, discarded
-        )
-
-    def _least_norm(self, problem: StepProblem) -> Choice:
-        increment = np.zeros(self.size)
-        valid, violation, cost = judge(self.model, problem, increment)
-        distance, angle = project(self.model, problem, increment)
-        feasible = int(valid and violation == 0.0)
-        return Choice(
-            valid, increment, distance, angle, violation, cost, 1, feasible, int(not valid)
-        )
+        limits = self.limits.rate_increments(problem.configuration)
+        lower, upper = self._method.bounds(*limits)
+        return self._method.choose(problem._replace(lower=lower, upper=upper), index)
 
     def disturbance(self, problem: StepProblem, increment: Array) -> Array:
         """F_dis (6,) of eq. (16) at the end of the step, without looking ahead."""
@@ -147,26 +99,15 @@ class StepSolver:
         return free_attitude(self.model, configuration[VEHICLE:].copy())
 
 
-def _settings(config: PlannerConfig) -> GeneticSettings:
-    genetic = config.genetic
-    return GeneticSettings(
-        population=genetic.population,
-        generations=genetic.generations,
-        bits=genetic.bits_per_variable,
-        crossover_rate=genetic.crossover_rate,
-        mutation_rate=genetic.mutation_rate,
-        elite=genetic.elite,
-        seed_refinements=genetic.seed_refinements,
-        refinements=genetic.refinements,
-    )
-
-
-def _weights(limits: StepLimits, config: PlannerConfig) -> tuple[Array, Array]:
-    """Readiness of the projection and motion weights of the fitness, both (m,)."""
+def _readiness(limits: StepLimits, config: PlannerConfig) -> Array:
+    """Inverse weights (m,) of the projection: how ready each variable is to move."""
     readiness = limits.reach**2
     readiness[:VEHICLE] *= config.projection.vehicle_share**2
-    if config.method == "arm_only":
-        readiness[:VEHICLE] = 0.0
-    motion = np.full(len(limits.reach), config.fitness.joint_motion_weight)
-    motion[:VEHICLE] = config.fitness.vehicle_motion_weight
-    return readiness, motion
+    return readiness
+
+
+def _motion_weights(size: int, config: PlannerConfig) -> Array:
+    """Costs (m,) of each variable's motion at its full rate."""
+    weights = np.full(size, config.fitness.joint_motion_weight)
+    weights[:VEHICLE] = config.fitness.vehicle_motion_weight
+    return weights

@@ -12,9 +12,17 @@ from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import force_figures, motion_figures, style
 from uvms_analysis.report.page import Picture, write_page
+from uvms_analysis.report.scene import draw_scene, scene
 from uvms_analysis.summary import summarise
 
+__all__ = ["FIGURES", "draw_scene", "report"]
+
 FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
+    "scene": (
+        "The vehicle at work. Ghosts: other postures; tube: true path of the tool, enlarged in the "
+        "corner; arrows: thrusts and disturbance at the time of the solid posture.",
+        scene,
+    ),
     "end_effector": (
         "End effector: true position against its target, and the error between them.",
         motion_figures.end_effector,

@@ -9,12 +9,12 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from uvms_analysis.report import style
+from uvms_analysis.trials.outcome import Outcome, table
 from uvms_analysis.trials.score import AXES
-from uvms_analysis.trials.validate import Outcome, table
 
 COLUMNS = 4
-LEAST_DEG = 3.0
-"""Height of an axis at least, so that noise does not look like motion."""
+MIN_SPAN_DEG = 3.0
+"""Least height of an axis, so that noise does not look like motion."""
 
 _LOOKS: dict[str, dict[str, Any]] = {
     "dynamic model": {"color": style.COLORS[0], "linewidth": 1.3, "zorder": 3},
@@ -50,11 +50,11 @@ def _trial(panel: Axes, each: Outcome, axis: int) -> None:
     measured = np.where(trial.accepted, trial.tilt[:, axis], np.nan)
     panel.plot(trial.t, measured, color="black", linewidth=0.9, label="measured")
     for model, look in _LOOKS.items():
-        panel.plot(trial.t, each.said[model].tilt[:, axis], label=model, **look)
+        panel.plot(trial.t, each.predicted[model].tilt[:, axis], label=model, **look)
     shown = np.concatenate(
-        [trial.tilt[trial.accepted, axis], each.said["dynamic model"].tilt[:, axis]]
+        [trial.tilt[trial.accepted, axis], each.predicted["dynamic model"].tilt[:, axis]]
     )
-    style.room(panel, shown, LEAST_DEG)
+    style.room(panel, shown, MIN_SPAN_DEG)
     panel.set_title(trial.name, fontsize=8)
     panel.margins(x=0.0)
 

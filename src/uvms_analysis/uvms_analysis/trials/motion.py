@@ -10,10 +10,10 @@ from uvms_core.signals import Array
 from uvms_dynamics.simulation.prescribed import JointMotion
 
 SAMPLES_PER_KNOT = 5
-"""At 25 Hz a knot every 0.2 s: the spline follows the arm and not the encoders' last digit."""
+"""At 25 Hz a knot every 0.2 s: the spline follows the arm, not the encoders' quantisation."""
 
 LONGEST_STEP_S = 0.05
-"""A twentieth of a second is far below the two or three seconds of a roll or pitch period."""
+"""Far below the two or three seconds of a roll or pitch period."""
 
 _CUBIC = 3
 
@@ -21,8 +21,8 @@ _CUBIC = 3
 def joint_motion(trial: Trial) -> tuple[JointMotion, NDArray[np.int64]]:
     """The motion for `float_freely`, and the index (k,) of each sample among its states.
 
-    A least-squares cubic spline of the measured angles: accelerations are continuous and are those
-    of the angles and rates that the model sees. A gap between samples is cut into several steps.
+    A least-squares cubic spline of the measured angles: its accelerations are continuous and match
+    its angles and rates. A gap between samples is divided into several steps.
     """
     cuts = np.maximum(1, np.ceil(np.diff(trial.t) / LONGEST_STEP_S - 1e-9).astype(int))
     index = np.concatenate([[0], np.cumsum(cuts)])

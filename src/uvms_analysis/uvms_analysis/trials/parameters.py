@@ -1,4 +1,4 @@
-"""The constants of a vehicle file that trials of a floating vehicle may show."""
+"""The constants of a vehicle file that trials of a floating vehicle may determine."""
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -14,10 +14,10 @@ class Parameter:
     name: str  # in plain words
     path: str  # in the file, dotted
     unit: str
-    scale: float  # of a change that shows, the unit of the fit
-    worst_error: float  # greatest standard error with which it counts as determined
+    scale: float  # of a noticeable change; the unit of the fit
+    worst_error: float  # largest standard error at which it counts as determined
     low: float = -float("inf")
-    may_be_absent: bool = False  # 0 means none of it, so it must be shown to differ from 0
+    may_be_absent: bool = False  # refused unless significantly different from 0
 
 
 _BY_DEPTH = "N m per m"
@@ -52,7 +52,7 @@ CANDIDATES = (
     Parameter("quadratic pitch damping", "hull.quadratic_damping.4", "N m s^2", 1.0, 1.0, 0.0),
     Parameter("heave damping", "hull.linear_damping.2", "N s/m", 2.0, 1.5, 0.0),
 )
-"""What a slow, free-floating vehicle could show at all; the data decides how much of it."""
+"""All that a slow, free-floating vehicle could determine; the data decides which of them."""
 
 
 def present(
@@ -93,7 +93,7 @@ def _look(data: Any, path: str) -> tuple[Any, str]:
         try:
             node = node[int(part)] if isinstance(node, list) else node[part]
         except (KeyError, IndexError, TypeError, ValueError):
-            return None, f"the vehicle file has no {path}" + _says(node, done)
+            return None, f"the vehicle file has no {path}" + _word_note(node, done)
         done = f"{done}.{part}" if done else part
     if isinstance(node, str):
         try:  # YAML reads 1e-3 as text
@@ -103,5 +103,5 @@ def _look(data: Any, path: str) -> tuple[Any, str]:
     return node, ""
 
 
-def _says(node: Any, done: str) -> str:
+def _word_note(node: Any, done: str) -> str:
     return f" ({done} is the word `{node}`)" if isinstance(node, str) else ""

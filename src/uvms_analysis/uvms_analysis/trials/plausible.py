@@ -1,4 +1,4 @@
-"""Mistakes in a trial's units that its numbers betray, and holes in its time."""
+"""Checks of a trial: units that its numbers rule out, and gaps in time."""
 
 from collections.abc import Mapping
 from pathlib import Path
@@ -10,16 +10,16 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.rotations import quat_to_rpy
 
 LARGEST_ANGLE_RAD = 4.0 * np.pi
-"""No joint of the arm turns on so far; in degrees most angles are larger."""
+"""Bound on joint angles, two turns; angles given in degrees usually exceed it."""
 
 DISAGREEMENT_DEG = 1.0
-"""Median by which roll and pitch may differ from the quaternion beside them."""
+"""Allowed median difference of roll and pitch from the quaternion in the same file."""
 
 SMALL_DEG = 0.5
-"""A vehicle that never tilts by so much may have been written down in radians: 29 degrees."""
+"""Tilt below which roll and pitch may be in radians (0.5 rad are 29 degrees)."""
 
-LONGEST_HOLE_S = 0.2
-"""Between two samples the arm's motion is interpolated; from here on the reader should know."""
+LONGEST_GAP_S = 0.2
+"""Longest gap between two samples without a note; the arm's motion is interpolated in it."""
 
 _AXES = {"q_b": 3, "q_c": 2, "q_d": 1, "q_e": 0}  # column of `alpha`
 
@@ -36,9 +36,9 @@ def check_angles(file: Path, alpha: Array) -> None:
 
 
 def tilt_notes(file: Path, tilt: Array, quaternion: Array | None) -> list[str]:
-    """What is odd about the measured roll and pitch (k, 2), degrees.
+    """Notes on the measured roll and pitch (k, 2), degrees.
 
-    quaternion: (k, 4) w, x, y, z beside them, rows of nan where there is none.
+    quaternion: (k, 4) w, x, y, z from the same file, rows of nan where it is missing.
 
     Raises:
         TrialError: the quaternion shows that roll and pitch are radians.
@@ -64,22 +64,22 @@ def tilt_notes(file: Path, tilt: Array, quaternion: Array | None) -> list[str]:
     ]
 
 
-def hole_notes(file: Path, t: Array) -> list[str]:
-    """The longest hole in the time (k,), if there is one, and how many others."""
+def gap_notes(file: Path, t: Array) -> list[str]:
+    """A note on the longest gap in time (k,) and the number of others, if there are any."""
     steps = np.diff(t)
-    holes = np.flatnonzero(steps > LONGEST_HOLE_S + 1e-6)
-    if not len(holes):
+    gaps = np.flatnonzero(steps > LONGEST_GAP_S + 1e-6)
+    if not len(gaps):
         return []
-    longest = holes[steps[holes].argmax()]
-    others = f"; {len(holes) - 1} more of over {LONGEST_HOLE_S:g} s" if len(holes) > 1 else ""
+    longest = gaps[steps[gaps].argmax()]
+    others = f"; {len(gaps) - 1} more of over {LONGEST_GAP_S:g} s" if len(gaps) > 1 else ""
     return [
         f"{file}: no samples for {steps[longest]:.2f} s after t = {t[longest]:g} s{others};"
         " the arm's motion there is interpolated"
     ]
 
 
-def beside(columns: Mapping[str, Array], *names: str) -> Array | None:
-    """Columns that a trial need not have, (k, n); None if one is absent."""
+def optional_columns(columns: Mapping[str, Array], *names: str) -> Array | None:
+    """Optional columns (k, n); None if one is absent."""
     if any(name not in columns for name in names):
         return None
     return np.stack([columns[name] for name in names], axis=1)

@@ -26,28 +26,28 @@ _LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 _ON_ITS_SIDE = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])  # rolled by 90 degrees
 
 
-class Course(NamedTuple):
-    """A trial, made ready to be driven: all of it that does not depend on the vehicle."""
+class PreparedTrial(NamedTuple):
+    """A trial with everything worked out that does not depend on the vehicle."""
 
     trial: Trial
     motion: JointMotion
     samples: NDArray[np.int64]  # (k,) indices of the samples among the states
     start: Start
-    depth: Array  # (k,) measured, m; for `uvms identify` alone
+    depth: Array  # (k,) measured, m; used by `uvms identify` only
 
 
 class Prediction(NamedTuple):
-    """What a model says of a trial, at its samples."""
+    """What a model predicts for a trial, at its samples."""
 
     tilt: Array  # (k, 2) roll and pitch, degrees, the trials' convention
     depth: Array  # (k,) m
 
 
-def make_course(trial: Trial) -> Course:
+def prepare_trial(trial: Trial) -> PreparedTrial:
     """The trial with its arm's motion and its initial state worked out."""
     motion, index = joint_motion(trial)
     depth = position_down(trial.position)[:, 2]
-    return Course(trial, motion, index, measured_start(trial), depth)
+    return PreparedTrial(trial, motion, index, measured_start(trial), depth)
 
 
 def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
@@ -69,28 +69,28 @@ def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
     return build_model(vehicle), load
 
 
-def dynamic(course: Course, model: Model, load: Load, trim: bool = True) -> Prediction:
+def dynamic(prepared: PreparedTrial, model: Model, load: Load, trim: bool = True) -> Prediction:
     """Integrate from the measured initial state, driven by the measured joints.
 
-    trim: with the trim of the day (see `trimmed`).
+    trim: with the initial trim offset (see `trimmed`).
     """
-    load = trimmed(course, model, load) if trim else load
-    states = float_freely(model, course.start.state, course.motion, load)[course.samples]
+    load = trimmed(prepared, model, load) if trim else load
+    states = float_freely(model, prepared.start.state, prepared.motion, load)[prepared.samples]
     down = np.array([quat_to_matrix(quaternion)[2] for quaternion in states[:, 3:7]])
     return Prediction(tilt_deg(down), states[:, 2])
 
 
-def trimmed(course: Course, model: Model, load: Load) -> Load:
+def trimmed(prepared: PreparedTrial, model: Model, load: Load) -> Load:
     """The load with the first moment that holds the vehicle at the tilt measured at the start.
 
-    Nobody knows the ballast, trapped air and pull of the tether of the day, nor how the markers
-    sat. A vehicle that starts at rest beside the model's rest shows that sum: a part of it stays
-    for the trial, the other wanders off and is forgotten (the best guess of a constant plus a
-    first-order Gauss-Markov process of which one value is known).
+    Ballast, trapped air, tether pull and marker placement differ from trial to trial. The tilt in
+    which the vehicle starts at rest, compared with the model's, shows their sum: part of it stays
+    for the trial, the rest fades (the best estimate of a constant plus a first-order Gauss-Markov
+    process of which one value is known).
     """
-    first = first_moment(model, course.motion.q[0]) + _loaded(load, course.start.state[2])
-    wanted = down_direction(course.start.tilt)
-    added = first[2] * wanted / wanted[2] - first
+    first = first_moment(model, prepared.motion.q[0]) + _loaded(load, prepared.start.state[2])
+    measured = down_direction(prepared.start.tilt)
+    added = first[2] * measured / measured[2] - first
     return load._replace(
         moment=load.moment + TRIM_STAYS * added,
         moment_fading=(1.0 - TRIM_STAYS) * added,
@@ -98,20 +98,20 @@ def trimmed(course: Course, model: Model, load: Load) -> Load:
     )
 
 
-def quasi_static(course: Course, model: Model, load: Load, depth: Array) -> Prediction:
-    """Balance of weight and buoyancy at every sample, depth (k,) as given; no initial state."""
-    angles = joint_angles(course.trial.alpha)
+def quasi_static(prepared: PreparedTrial, model: Model, load: Load, depth: Array) -> Prediction:
+    """Balance of weight and buoyancy at every sample, depth (k,) given; no initial state."""
+    angles = joint_angles(prepared.trial.alpha)
     moments = [
         first_moment(model, q) + _loaded(load, d) for q, d in zip(angles, depth, strict=True)
     ]
     return Prediction(tilt_deg(_direction(np.array(moments))), depth)
 
 
-def constant(course: Course) -> Prediction:
-    """Nothing ever moves."""
-    count = len(course.trial.t)
-    depth = np.full(count, course.start.state[2])
-    return Prediction(np.tile(course.start.tilt, (count, 1)), depth)
+def constant(prepared: PreparedTrial) -> Prediction:
+    """The initial attitude and depth, throughout."""
+    count = len(prepared.trial.t)
+    depth = np.full(count, prepared.start.state[2])
+    return Prediction(np.tile(prepared.start.tilt, (count, 1)), depth)
 
 
 def first_moment(model: Model, q: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvms_analysis.errors import TrialError
-from uvms_analysis.trials.plausible import beside, check_angles, hole_notes, tilt_notes
+from uvms_analysis.trials.plausible import check_angles, gap_notes, optional_columns, tilt_notes
 from uvms_core.signals import Array
 
 NEEDED = (
@@ -21,12 +21,12 @@ NEEDED = (
 _QUATERNION = ("qw", "qx", "qy", "qz")
 _SENSOR = ("imu_roll", "imu_pitch")
 OPTIONAL = (*_QUATERNION, *_SENSOR)
-"""Columns that are looked at where they are; no prediction uses them."""
+"""Columns that are used for checks and comparison only, where they are present."""
 
-Tell = Callable[[str], None]
+Log = Callable[[str], None]
 
-FEWEST = 25
-"""Samples below which a file is no trial."""
+MIN_SAMPLES = 25
+"""Samples that a trial must have."""
 
 
 @dataclass(frozen=True)
@@ -48,12 +48,12 @@ class Trial:
         return self.attitude[:, :2]
 
 
-def read_trials(folder: str | Path, tell: Tell = lambda note: None) -> list[Trial]:
-    """Every `*.csv` of the folder, by name; `tell` gets what is odd but no fault.
+def read_trials(folder: str | Path, log: Log = lambda note: None) -> list[Trial]:
+    """Every `*.csv` of the folder, by name; `log` gets notes on oddities that are not errors.
 
     Raises:
-        TrialError: no such folder, no CSV in it, or a file that is no trial; the text names the
-            file, and the line and column of a missing or wrong value.
+        TrialError: no such folder, no CSV in it, or a file that is not a trial; the message names
+            the file, and the line and column of a missing or wrong value.
     """
     folder = Path(folder)
     if not folder.is_dir():
@@ -61,10 +61,10 @@ def read_trials(folder: str | Path, tell: Tell = lambda note: None) -> list[Tria
     files = sorted(folder.glob("*.csv"))
     if not files:
         raise TrialError(f"{folder}: holds no *.csv, so there are no trials in it")
-    return [read_trial(file, tell) for file in files]
+    return [read_trial(file, log) for file in files]
 
 
-def read_trial(file: Path, tell: Tell = lambda note: None) -> Trial:
+def read_trial(file: Path, log: Log = lambda note: None) -> Trial:
     """One trial; raises TrialError as `read_trials`."""
     columns = _columns(file)
     t = columns["t"]
@@ -72,7 +72,7 @@ def read_trial(file: Path, tell: Tell = lambda note: None) -> Trial:
     accepted = columns.get("moc_ok", np.ones(len(t))) > 0.5
     if not accepted.any():
         raise TrialError(f"{file}: column moc_ok: is 0 throughout, so nothing can be scored")
-    sensor = beside(columns, *_SENSOR)
+    sensor = optional_columns(columns, *_SENSOR)
     trial = Trial(
         file.stem,
         t,
@@ -85,10 +85,10 @@ def read_trial(file: Path, tell: Tell = lambda note: None) -> Trial:
     )
     check_angles(file, trial.alpha)
     for note in (
-        *tilt_notes(file, trial.tilt, beside(columns, *_QUATERNION)),
-        *hole_notes(file, t),
+        *tilt_notes(file, trial.tilt, optional_columns(columns, *_QUATERNION)),
+        *gap_notes(file, t),
     ):
-        tell(f"note: {note}")
+        log(f"note: {note}")
     return trial
 
 
@@ -113,8 +113,8 @@ def _columns(file: Path) -> dict[str, Array]:
             text = row[place] if place < len(row) else ""
             read = _number_or_nan if name in OPTIONAL else _number
             values[line - 2, k] = read(file, line, name, text)
-    if len(values) < FEWEST:
-        raise TrialError(f"{file}: has {len(values)} samples; a trial has at least {FEWEST}")
+    if len(values) < MIN_SAMPLES:
+        raise TrialError(f"{file}: has {len(values)} samples; a trial has at least {MIN_SAMPLES}")
     return dict(zip(names, values.T, strict=True))
 
 

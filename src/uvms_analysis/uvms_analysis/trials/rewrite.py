@@ -1,4 +1,4 @@
-"""Put numbers into the text of a YAML file and leave every other letter as it is."""
+"""Replace numbers in the text of a YAML file, leaving every other character as it is."""
 
 import math
 from collections.abc import Mapping
@@ -6,14 +6,14 @@ from collections.abc import Mapping
 import numpy as np
 import yaml
 
-FINENESS = 30.0
-"""Steps of the last digit in a standard error, at least: rounding must not show."""
+STEPS_PER_ERROR = 30.0
+"""Least number of steps of the last digit in a standard error, so that rounding is harmless."""
 
 
 def rewritten(text: str, values: Mapping[str, tuple[float, float]]) -> str:
     """The text with the number at each dotted path replaced; comments and layout stay.
 
-    values: the number and its standard error, which says how many digits are written.
+    values: the number and its standard error, which determines how many digits are written.
     """
     root = yaml.compose(text, Loader=yaml.SafeLoader)
     spans = []
@@ -26,7 +26,7 @@ def rewritten(text: str, values: Mapping[str, tuple[float, float]]) -> str:
 
 
 def _number(value: float, error: float) -> str:
-    decimals = max(1, math.ceil(math.log10(FINENESS / error)))
+    decimals = max(1, math.ceil(math.log10(STEPS_PER_ERROR / error)))
     return np.format_float_positional(round(value, decimals) + 0.0, trim="0")
 
 

@@ -1,4 +1,4 @@
-"""The vehicle's own attitude sensor in the model's place: how far two instruments disagree."""
+"""The vehicle's own attitude sensor scored like a model: how far two instruments disagree."""
 
 from collections.abc import Sequence
 
@@ -11,8 +11,8 @@ from uvms_core.signals import Array
 def sensor_tilts(trials: Sequence[Trial]) -> list[Array] | None:
     """Roll and pitch (k, 2) of the sensor, degrees, of each trial; None unless all have them.
 
-    One offset is taken off all of them, the mean over the trials of their mean differences from
-    the motion capture, as the two are not mounted alike.
+    One common offset is removed, the mean over the trials of their mean differences from the motion
+    capture, since the two instruments are not aligned.
     """
     pairs = [(trial, trial.sensor) for trial in trials if trial.sensor is not None]
     if len(pairs) < len(trials):

@@ -1,4 +1,4 @@
-"""What the first moments of a trial tell: the initial state, and the trim of the day."""
+"""The initial state of a trial, and the initial trim offset that its first moments show."""
 
 from typing import NamedTuple
 
@@ -11,11 +11,11 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.simulation.prescribed import STATE
 
 WINDOW_S = 0.5
-"""The initial state is the mean over so long a time; nothing later is ever looked at."""
+"""Length of the window that gives the initial state; no later sample is used."""
 
 TRIM_STAYS = 0.3
 TRIM_FADES_S = 5.0
-"""Of the tilt at the start beside the model's rest so much stays; the others fade in this time.
+"""Share of the initial trim offset that stays, and time constant with which the rest fades.
 
 Cross-validated: docs/validation.md.
 """
@@ -31,7 +31,7 @@ class Start(NamedTuple):
 def measured_start(trial: Trial) -> Start:
     """Mean position, attitude and rates, and the slope of the position, over the first window.
 
-    Samples that the motion capture does not vouch for are left out where others are there.
+    Samples that the motion capture marks as bad are left out if at least two good ones remain.
     """
     window = trial.t <= trial.t[0] + WINDOW_S
     if (window & trial.accepted).sum() >= 2:

@@ -19,13 +19,13 @@ _HEAD = f"{'trial':<18}{'axis':<7}{'model':<16}{'RMSE deg':>9}{'no offset':>11}{
 
 
 LEGEND = """\
-RMSE: root mean square of predicted less measured, over the samples with moc_ok = 1.
-no offset: the same after each trial's mean error is taken out.
-correlation: of predicted with measured; - where one of them does not move."""
+RMSE: root mean square of predicted minus measured, over the samples with moc_ok = 1.
+no offset: the same after each trial's mean error is removed.
+correlation: of predicted and measured; - where one of them is constant."""
 
 SENSOR_LEGEND = """\
-attitude sensor: the vehicle's own (imu_roll, imu_pitch) in a model's place, one offset for all
-trials taken out; `no offset`: one for each trial."""
+attitude sensor: the vehicle's own (imu_roll, imu_pitch) scored like a model, one offset for all
+trials removed; `no offset`: one for each trial."""
 
 
 def table_text(names: list[str], table: Scores) -> str:
@@ -45,9 +45,9 @@ def _rows(name: str, both: dict[str, tuple[Score, Score]]) -> list[str]:
     lines = []
     for axis, label in enumerate(AXES):
         for model, score in both.items():
-            figures = f"{score[axis].rmse:9.2f}{score[axis].rmse_without_offset:11.2f}"
+            metrics = f"{score[axis].rmse:9.2f}{score[axis].rmse_without_offset:11.2f}"
             tail = _correlation(score[axis].correlation)
-            lines.append(f"{name:<18}{label:<7}{model:<16}{figures}{tail:>13}")
+            lines.append(f"{name:<18}{label:<7}{model:<16}{metrics}{tail:>13}")
     return lines
 
 

@@ -1,57 +1,34 @@
-"""`uvms validate`: hold the model against recorded trials."""
+"""`uvms validate`: compare the model with recorded trials."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from pathlib import Path
 
+from uvms_analysis.trials.outcome import CONSTANT, DYNAMIC, QUASI_STATIC, Outcome, table
 from uvms_analysis.trials.predict import (
-    Course,
-    Prediction,
     constant,
     drive_model,
     dynamic,
-    make_course,
+    prepare_trial,
     quasi_static,
 )
 from uvms_analysis.trials.read import Trial, read_trials
-from uvms_analysis.trials.score import AXES, medians, scores
-from uvms_analysis.trials.sensor import sensor_tilts
-from uvms_analysis.trials.table import SENSOR, Scores, table_text, write_csv
+from uvms_analysis.trials.score import AXES, medians
+from uvms_analysis.trials.table import Scores, table_text, write_csv
 from uvms_core.vehicle import Vehicle, load_vehicle
-
-DYNAMIC, QUASI_STATIC, CONSTANT = "dynamic model", "quasi-static", "constant"
-
-
-@dataclass(frozen=True)
-class Outcome:
-    """A trial and what each model says of it."""
-
-    trial: Trial
-    said: dict[str, Prediction]
 
 
 def outcomes(vehicle: Vehicle, trials: list[Trial], trim: bool = True) -> Iterator[Outcome]:
-    """Every trial in turn, predicted by the full model and by the plain ones."""
+    """Every trial in turn, predicted by the full model and by the simple ones."""
     model, load = drive_model(vehicle)
     for trial in trials:
-        course: Course = make_course(trial)
-        moving = dynamic(course, model, load, trim)
-        still = quasi_static(course, model, load, moving.depth)
-        yield Outcome(trial, {DYNAMIC: moving, QUASI_STATIC: still, CONSTANT: constant(course)})
-
-
-def table(found: list[Outcome]) -> Scores:
-    """Scores by model, over the trials."""
-    models = found[0].said
-    rows = {m: [scores(each.trial, each.said[m].tilt) for each in found] for m in models}
-    if (tilts := sensor_tilts([each.trial for each in found])) is not None:
-        pairs = zip(found, tilts, strict=True)
-        rows[SENSOR] = [scores(each.trial, tilt) for each, tilt in pairs]
-    return rows
+        prepared = prepare_trial(trial)
+        moving = dynamic(prepared, model, load, trim)
+        still = quasi_static(prepared, model, load, moving.depth)
+        yield Outcome(trial, {DYNAMIC: moving, QUASI_STATIC: still, CONSTANT: constant(prepared)})
 
 
 def remarks(rows: Scores) -> list[str]:
-    """What the reader should conclude from the medians, if anything."""
+    """Warnings that follow from the medians."""
     model, still = medians(rows[DYNAMIC]), medians(rows[CONSTANT])
     return [
         f"The dynamic model predicts {axis} worse than `constant` does ({model[k].rmse:.2f} against"
@@ -66,12 +43,12 @@ def validate(
     vehicle: str,
     output: str | None,
     figures: bool,
-    tell: Callable[[str], None] = lambda line: None,
+    log: Callable[[str], None] = lambda line: None,
     trim: bool = True,
 ) -> str:
     """Predict, write what was asked for, and return the table."""
-    described, recorded = load_vehicle(vehicle), read_trials(trials, tell)
-    tell(f"{len(recorded)} trials of {described.name} (some 20 s more where kernels compile first)")
+    described, recorded = load_vehicle(vehicle), read_trials(trials, log)
+    log(f"{len(recorded)} trials of {described.name} (some 20 s more where kernels compile first)")
     found = list(outcomes(described, recorded, trim))
     rows = table(found)
     text = table_text([each.trial.name for each in found], rows)
@@ -81,7 +58,7 @@ def validate(
     folder = Path(output)
     folder.mkdir(parents=True, exist_ok=True)
     for each in found:
-        write_csv(each.trial, each.said[DYNAMIC].tilt, folder)
+        write_csv(each.trial, each.predicted[DYNAMIC].tilt, folder)
     (folder / "table.txt").write_text(text + "\n", encoding="utf-8")
     if figures:
         from uvms_analysis.trials.figures import draw  # matplotlib takes its time

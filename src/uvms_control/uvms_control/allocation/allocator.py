@@ -9,17 +9,12 @@ whose attitude the arm disturbs the first is the better choice; the second is a 
 
 import numpy as np
 
-from uvms_control.allocation.authority import (
-    AXES,
-    axes_without_authority,
-    axis_authority,
-)
+from uvms_control.allocation.authority import axes_without_authority, axis_authority
 from uvms_control.allocation.least_squares import BoundedLeastSquares
-from uvms_control.checks import checked
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
 from uvms_control.vehicle_data import thruster_limits
-from uvms_core.errors import SignalError
+from uvms_core import checks
 from uvms_core.signals import Allocation, Array, ThrusterCommand, Wrench, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import thruster_matrix
@@ -85,9 +80,10 @@ class ThrustAllocator:
     def step(self, wrench: Wrench) -> tuple[ThrusterCommand, Allocation]:
         """Thrusts for a commanded wrench (6,) at its stamp, and what they achieve.
 
-        Raises SignalError for a wrench that is not finite.
+        Raises SignalError for a wrench of a wrong shape or that is not finite.
         """
-        tau = _checked_wrench(wrench)
+        checks.check("wrench_command", wrench)
+        tau = wrench.wrench
         lower, upper = self._bounds(wrench.stamp)
         thrust = self._solver.solve(tau, lower, upper)
         if self._config.preserve_direction and not self._exact(thrust, tau):
@@ -140,14 +136,6 @@ class ThrustAllocator:
             else:
                 high = share
         return best
-
-
-def _checked_wrench(wrench: Wrench) -> Array:
-    tau = np.asarray(wrench.wrench, dtype=np.float64)
-    for axis, value in zip(AXES, tau.ravel(), strict=False):
-        if not np.isfinite(value):
-            raise SignalError(f"wrench_command.{axis}: {value}, expected a finite number")
-    return checked("wrench_command", tau, (6,))
 
 
 def _check_layout(matrix: Array, limits: Array, slew: Array) -> None:

@@ -1,37 +1,20 @@
 """Node `controller`: S-surface plus dynamic law for the vehicle, S-surface law for the arm."""
 
-from uvms_control import ControlConfig, Controller
-from uvms_core import topics
+from uvms_control import ControlConfig
+from uvms_control.parts import ControllerPart
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import UvmsNode
-from uvms_core.tick_gate import Covering, Same, Tick
+from uvms_core.ros.part_node import PartNode
 
 
-class ControllerNode(UvmsNode):
+class ControllerNode(PartNode):
     """odometry, joint_states, reference and disturbance in; wrench and joint command out."""
 
+    role = "controller"
     configurations = (ControlConfig,)
 
-    def __init__(self, **options) -> None:
-        super().__init__("controller", **options)
-        self._controller = Controller(self.vehicle, self.config(ControlConfig))
-        inputs = {
-            topics.ODOMETRY: Same(),
-            topics.JOINT_STATES: Same(),
-            topics.DISTURBANCE: Same(),
-            topics.REFERENCE: Covering(),
-        }
-        self.connect(inputs, topics.ODOMETRY, self._step)
-
-    def _step(self, tick: Tick) -> None:
-        wrench, joints = self._controller.step(
-            tick[topics.ODOMETRY.name],
-            tick[topics.JOINT_STATES.name],
-            tick[topics.DISTURBANCE.name],
-            tick[topics.REFERENCE.name],
-        )
-        self.send(topics.WRENCH_COMMAND, wrench)
-        self.send(topics.JOINT_COMMAND, joints)
+    def make_part(self) -> ControllerPart:
+        """The control law that the parameters name."""
+        return ControllerPart(self.vehicle, self.config(ControlConfig))
 
 
 def main(args=None) -> int:

@@ -1,30 +1,23 @@
 """Node `thrust_allocator`: the commanded wrench as thrusts within their limits."""
 
-from uvms_control import AllocatorConfig, ThrustAllocator
-from uvms_core import topics
+from uvms_control import AllocatorConfig
+from uvms_control.parts import AllocatorPart
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import UvmsNode
-from uvms_core.signals import Wrench
-from uvms_core.tick_gate import Same, Tick
+from uvms_core.ros.part_node import PartNode
 
 
-class ThrustAllocatorNode(UvmsNode):
+class ThrustAllocatorNode(PartNode):
     """wrench_command in; thruster_command, wrench_achieved and allocation out."""
 
+    role = "thrust_allocator"
     configurations = (AllocatorConfig,)
 
-    def __init__(self, **options) -> None:
-        super().__init__("thrust_allocator", **options)
-        self._allocator = ThrustAllocator(self.vehicle, self.config(AllocatorConfig))
-        if self._allocator.warning:
-            self.get_logger().warning(self._allocator.warning)
-        self.connect({topics.WRENCH_COMMAND: Same()}, topics.WRENCH_COMMAND, self._step)
-
-    def _step(self, tick: Tick) -> None:
-        command, allocation = self._allocator.step(tick[topics.WRENCH_COMMAND.name])
-        self.send(topics.THRUSTER_COMMAND, command)
-        self.send(topics.WRENCH_ACHIEVED, Wrench(tick.stamp, allocation.achieved))
-        self.send(topics.ALLOCATION, allocation)
+    def make_part(self) -> AllocatorPart:
+        """The allocation method that the parameters name."""
+        part = AllocatorPart(self.vehicle, self.config(AllocatorConfig))
+        if warning := getattr(part.method, "warning", None):
+            self.get_logger().warning(warning)
+        return part
 
 
 def main(args=None) -> int:

@@ -19,6 +19,7 @@ import numpy as np
 from uvms_core import topics
 from uvms_core.errors import VehicleFileError
 from uvms_core.rotations import quat_to_matrix, rpy_to_quat
+from uvms_core.sensors import sensor_types
 from uvms_core.signals import Array
 from uvms_core.vehicle.arm import Joint
 from uvms_core.vehicle.frames import (
@@ -93,14 +94,10 @@ def basis(axis: Array, column: int) -> Array:
 
 
 def _sensors(vehicle: Vehicle) -> Iterator[Branch]:
-    sensors = vehicle.sensors
-    for frame, sensor in (
-        (topics.IMU_FRAME, sensors.imu),
-        (topics.DVL_FRAME, sensors.dvl),
-        (topics.PRESSURE_FRAME, sensors.pressure),
-        (topics.GPS_FRAME, sensors.gps),
-    ):
-        yield Branch(frame, topics.BODY_FRAME, (np.array(sensor.position_m), np.eye(3)))
+    mounted = vehicle.sensors.mounted
+    for sensor in sensor_types(vehicle):
+        pose = np.array(mounted[sensor.name].position_m), np.eye(3)
+        yield Branch(sensor.mounting_frame, topics.BODY_FRAME, pose)
 
 
 def _thrusters(vehicle: Vehicle) -> Iterator[Branch]:

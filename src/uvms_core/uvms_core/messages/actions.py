@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from uvms_core.errors import SignalError
-from uvms_core.messages import checks, parts
+from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
-from uvms_core.topics import WORLD_FRAME, Action
+from uvms_core.topic import WORLD_FRAME, Action
 
 
 def _stampless(frame: str) -> Plain:
@@ -39,14 +39,14 @@ def path_from(action: Action, msg: Any, names: Sequence[str]) -> PathGoal:
     count = _count(action, "positions", msg.positions)
     _check_length(action, "time_from_start", msg.time_from_start, (count,))
     _check_length(action, "orientations", msg.orientations, (0, count))
-    times = checks.times(action, "time_from_start[{}]", msg.time_from_start)
+    times = fields.times(action, "time_from_start[{}]", msg.time_from_start)
     if times[0] != 0.0:
         raise SignalError(f"{action.name}: time_from_start[0] is {times[0]:g} s; it must be 0")
     positions = [
-        checks.xyz(action, f"positions[{k}]", point) for k, point in enumerate(msg.positions)
+        fields.xyz(action, f"positions[{k}]", point) for k, point in enumerate(msg.positions)
     ]
     orientations = [
-        checks.quaternion(action, f"orientations[{k}]", value)
+        fields.quaternion(action, f"orientations[{k}]", value)
         for k, value in enumerate(msg.orientations)
     ]
     return PathGoal(times, np.array(positions), np.array(orientations).reshape(-1, 4))
@@ -73,15 +73,15 @@ def joints_from(action: Action, msg: Any, names: Sequence[str]) -> JointGoal:
     """From the goal of FollowJointTrajectory; times are positive and increase."""
     trajectory = msg.trajectory
     _count(action, "trajectory.points", trajectory.points)
-    index = checks.order(action, "trajectory.joint_names", trajectory.joint_names, names)
+    index = fields.order(action, "trajectory.joint_names", trajectory.joint_names, names)
     offsets = [point.time_from_start for point in trajectory.points]
     path = "trajectory.points[{}].time_from_start"
-    times = checks.times(action, path, offsets)
+    times = fields.times(action, path, offsets)
     if times[0] <= 0.0:
         raise SignalError(f"{action.name}: {path.format(0)} is {times[0]:g} s; it must be > 0")
     count = len(trajectory.joint_names)
     positions = [
-        checks.floats(action, f"trajectory.points[{k}].positions", point.positions, count)
+        fields.floats(action, f"trajectory.points[{k}].positions", point.positions, count)
         for k, point in enumerate(trajectory.points)
     ]
     return JointGoal(times, np.ascontiguousarray(np.array(positions)[:, index]))

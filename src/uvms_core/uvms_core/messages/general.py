@@ -5,9 +5,9 @@ from typing import Any
 
 from uvms_core.diagnostics import Status
 from uvms_core.errors import SignalError
-from uvms_core.messages import checks, parts
+from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
-from uvms_core.topics import Topic
+from uvms_core.topic import Topic
 
 
 def clock_to(topic: Topic, stamp: int, names: Sequence[str]) -> Plain:
@@ -17,7 +17,7 @@ def clock_to(topic: Topic, stamp: int, names: Sequence[str]) -> Plain:
 
 def clock_from(topic: Topic, msg: Any, names: Sequence[str]) -> int:
     """From rosgraph_msgs/Clock."""
-    return checks.stamp_of(msg.clock)
+    return fields.stamp_of(msg.clock)
 
 
 def status_to(topic: Topic, status: Status, names: Sequence[str]) -> Plain:
@@ -47,4 +47,4 @@ def status_from(topic: Topic, msg: Any, names: Sequence[str]) -> Status:
     one = msg.status[0]
     level = one.level[0] if isinstance(one.level, bytes) else one.level
     values = {item.key: item.value for item in one.values}
-    return Status(checks.stamp_of(msg.header.stamp), one.name, level, one.message, values)
+    return Status(fields.stamp_of(msg.header.stamp), one.name, level, one.message, values)

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uvms_core.errors import SignalError
-from uvms_core.messages import checks, parts
+from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.signals import (
     Allocation,
@@ -17,7 +17,7 @@ from uvms_core.signals import (
     ThrusterCommand,
     Wrench,
 )
-from uvms_core.topics import Topic
+from uvms_core.topic import Topic
 
 
 def odometry_to(topic: Topic, value: Odometry, names: Sequence[str]) -> Plain:
@@ -38,16 +38,16 @@ def odometry_to(topic: Topic, value: Odometry, names: Sequence[str]) -> Plain:
 
 def odometry_from(topic: Topic, msg: Any, names: Sequence[str]) -> Odometry:
     """From nav_msgs/Odometry."""
-    checks.check_frame(topic, msg.header)
-    checks.check_child_frame(topic, msg.child_frame_id)
+    fields.check_frame(topic, msg.header)
+    fields.check_child_frame(topic, msg.child_frame_id)
     pose = msg.pose.pose
     return Odometry(
-        checks.stamp_of(msg.header.stamp),
-        checks.vector(topic, "pose.pose.position", pose.position),
-        checks.quaternion(topic, "pose.pose.orientation", pose.orientation),
-        checks.twist(topic, "twist.twist", msg.twist.twist),
-        checks.covariance(topic, "pose.covariance", msg.pose.covariance, 6),
-        checks.covariance(topic, "twist.covariance", msg.twist.covariance, 6),
+        fields.stamp_of(msg.header.stamp),
+        fields.vector(topic, "pose.pose.position", pose.position),
+        fields.quaternion(topic, "pose.pose.orientation", pose.orientation),
+        fields.twist(topic, "twist.twist", msg.twist.twist),
+        fields.covariance(topic, "pose.covariance", msg.pose.covariance, 6),
+        fields.covariance(topic, "twist.covariance", msg.twist.covariance, 6),
     )
 
 
@@ -64,6 +64,11 @@ def tf_to(topic: Topic, value: Odometry, names: Sequence[str]) -> Plain:
     return {"transforms": [transform]}
 
 
+def tf_from(topic: Topic, msg: Any, names: Sequence[str]) -> Odometry:
+    """Never: transforms are for viewers, and have no velocities."""
+    raise SignalError(f"{topic.name}: carries no signal")
+
+
 def joints_to(topic: Topic, value: JointStates, names: Sequence[str]) -> Plain:
     """sensor_msgs/JointState."""
     return {
@@ -77,14 +82,14 @@ def joints_to(topic: Topic, value: JointStates, names: Sequence[str]) -> Plain:
 
 def joints_from(topic: Topic, msg: Any, names: Sequence[str]) -> JointStates:
     """From sensor_msgs/JointState with position, velocity and effort."""
-    checks.check_frame(topic, msg.header)
-    index = checks.order(topic, "name", msg.name, names)
+    fields.check_frame(topic, msg.header)
+    index = fields.order(topic, "name", msg.name, names)
     count = len(msg.name)
     return JointStates(
-        checks.stamp_of(msg.header.stamp),
-        checks.floats(topic, "position", msg.position, count)[index],
-        checks.floats(topic, "velocity", msg.velocity, count)[index],
-        checks.floats(topic, "effort", msg.effort, count)[index],
+        fields.stamp_of(msg.header.stamp),
+        fields.floats(topic, "position", msg.position, count)[index],
+        fields.floats(topic, "velocity", msg.velocity, count)[index],
+        fields.floats(topic, "effort", msg.effort, count)[index],
     )
 
 
@@ -99,10 +104,10 @@ def _effort_to(topic: Topic, stamp: int, effort: Any, names: Sequence[str]) -> P
 
 
 def _effort_from(topic: Topic, msg: Any, names: Sequence[str]) -> tuple[int, Any]:
-    checks.check_frame(topic, msg.header)
-    index = checks.order(topic, "name", msg.name, names)
-    effort = checks.floats(topic, "effort", msg.effort, len(msg.name))[index]
-    return checks.stamp_of(msg.header.stamp), effort
+    fields.check_frame(topic, msg.header)
+    index = fields.order(topic, "name", msg.name, names)
+    effort = fields.floats(topic, "effort", msg.effort, len(msg.name))[index]
+    return fields.stamp_of(msg.header.stamp), effort
 
 
 def joint_command_to(topic: Topic, value: JointCommand, names: Sequence[str]) -> Plain:
@@ -132,8 +137,8 @@ def wrench_to(topic: Topic, value: Wrench, names: Sequence[str]) -> Plain:
 
 def wrench_from(topic: Topic, msg: Any, names: Sequence[str]) -> Wrench:
     """From geometry_msgs/WrenchStamped."""
-    checks.check_frame(topic, msg.header)
-    return Wrench(checks.stamp_of(msg.header.stamp), checks.wrench(topic, "wrench", msg.wrench))
+    fields.check_frame(topic, msg.header)
+    return Wrench(fields.stamp_of(msg.header.stamp), fields.wrench(topic, "wrench", msg.wrench))
 
 
 def budget_to(topic: Topic, value: DisturbanceBudget, names: Sequence[str]) -> Plain:
@@ -148,12 +153,12 @@ def budget_to(topic: Topic, value: DisturbanceBudget, names: Sequence[str]) -> P
 
 def budget_from(topic: Topic, msg: Any, names: Sequence[str]) -> DisturbanceBudget:
     """From uvms_msgs/DisturbanceBudget."""
-    checks.check_frame(topic, msg.header)
+    fields.check_frame(topic, msg.header)
     return DisturbanceBudget(
-        checks.stamp_of(msg.header.stamp),
-        checks.wrench(topic, "restoring", msg.restoring),
-        checks.wrench(topic, "coupling", msg.coupling),
-        checks.wrench(topic, "external", msg.external),
+        fields.stamp_of(msg.header.stamp),
+        fields.wrench(topic, "restoring", msg.restoring),
+        fields.wrench(topic, "coupling", msg.coupling),
+        fields.wrench(topic, "external", msg.external),
     )
 
 
@@ -171,8 +176,8 @@ def allocation_to(topic: Topic, value: Allocation, names: Sequence[str]) -> Plai
 
 def allocation_from(topic: Topic, msg: Any, names: Sequence[str]) -> Allocation:
     """From uvms_msgs/Allocation."""
-    checks.check_frame(topic, msg.header)
-    index = checks.order(topic, "thruster_names", msg.thruster_names, names)
+    fields.check_frame(topic, msg.header)
+    index = fields.order(topic, "thruster_names", msg.thruster_names, names)
     count = len(msg.thruster_names)
     saturated = np.array(msg.saturated, dtype=np.bool_)
     if saturated.shape != (count,):
@@ -180,9 +185,9 @@ def allocation_from(topic: Topic, msg: Any, names: Sequence[str]) -> Allocation:
             f"{topic.name}: saturated has {saturated.size} values; it must have {count}"
         )
     return Allocation(
-        checks.stamp_of(msg.header.stamp),
-        checks.floats(topic, "thrust", msg.thrust, count)[index],
-        checks.wrench(topic, "achieved", msg.achieved),
-        checks.wrench(topic, "residual", msg.residual),
+        fields.stamp_of(msg.header.stamp),
+        fields.floats(topic, "thrust", msg.thrust, count)[index],
+        fields.wrench(topic, "achieved", msg.achieved),
+        fields.wrench(topic, "residual", msg.residual),
         saturated[index],
     )

@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uvms_core.signals import NANOSECONDS, Array
-from uvms_core.topics import Topic
+from uvms_core.topic import Topic
 
 Plain = dict[str, Any]
 

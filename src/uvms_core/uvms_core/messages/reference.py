@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 
 from uvms_core.errors import SignalError
-from uvms_core.messages import checks, parts
+from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.signals import Reference, to_nanoseconds
-from uvms_core.topics import Topic
+from uvms_core.topic import Topic
 
 
 def reference_to(topic: Topic, value: Reference, names: Sequence[str]) -> Plain:
@@ -36,13 +36,13 @@ def _point_to(value: Reference, k: int) -> Plain:
 
 def reference_from(topic: Topic, msg: Any, names: Sequence[str]) -> Reference:
     """From uvms_msgs/Reference; its times must increase from 0."""
-    checks.check_frame(topic, msg.header)
-    index = checks.order(topic, "joint_names", msg.joint_names, names)
+    fields.check_frame(topic, msg.header)
+    index = fields.order(topic, "joint_names", msg.joint_names, names)
     if not len(msg.points):
         raise SignalError(f"{topic.name}: points is empty; it must have at least one")
     count = len(msg.joint_names)
     offsets = [point.time_from_start for point in msg.points]
-    times = checks.times(topic, "points[{}].time_from_start", offsets)
+    times = fields.times(topic, "points[{}].time_from_start", offsets)
     if times[0] != 0.0:
         raise SignalError(
             f"{topic.name}: points[0].time_from_start is {times[0]:g} s; it must be 0"
@@ -52,7 +52,7 @@ def reference_from(topic: Topic, msg: Any, names: Sequence[str]) -> Reference:
         np.array(column) for column in zip(*rows, strict=True)
     )
     return Reference(
-        checks.stamp_of(msg.header.stamp),
+        fields.stamp_of(msg.header.stamp),
         times,
         pose,
         attitude,
@@ -69,12 +69,12 @@ def _point_from(topic: Topic, k: int, point: Any, count: int) -> tuple[Any, ...]
     at = f"points[{k}]"
     pose = point.pose
     return (
-        checks.xyz(topic, f"{at}.pose.position", pose.position),
-        checks.quaternion(topic, f"{at}.pose.orientation", pose.orientation),
-        checks.twist(topic, f"{at}.twist", point.twist),
-        checks.twist(topic, f"{at}.accel", point.accel),
-        checks.floats(topic, f"{at}.joint_position", point.joint_position, count),
-        checks.floats(topic, f"{at}.joint_velocity", point.joint_velocity, count),
-        checks.floats(topic, f"{at}.joint_acceleration", point.joint_acceleration, count),
-        checks.xyz(topic, f"{at}.end_effector", point.end_effector),
+        fields.xyz(topic, f"{at}.pose.position", pose.position),
+        fields.quaternion(topic, f"{at}.pose.orientation", pose.orientation),
+        fields.twist(topic, f"{at}.twist", point.twist),
+        fields.twist(topic, f"{at}.accel", point.accel),
+        fields.floats(topic, f"{at}.joint_position", point.joint_position, count),
+        fields.floats(topic, f"{at}.joint_velocity", point.joint_velocity, count),
+        fields.floats(topic, f"{at}.joint_acceleration", point.joint_acceleration, count),
+        fields.xyz(topic, f"{at}.end_effector", point.end_effector),
     )

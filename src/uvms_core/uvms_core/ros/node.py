@@ -1,4 +1,4 @@
-"""What the six nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
+"""What our nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
@@ -18,15 +18,15 @@ from uvms_core.errors import PlantDiverged, UvmsError
 from uvms_core.messages import from_message, to_message
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.parameters import declare_config
+from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
 from uvms_core.signals import NANOSECONDS, to_nanoseconds
 from uvms_core.tick_gate import Input, Tick, TickGate
+from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.topics import Qos, Topic
 from uvms_core.vehicle import Vehicle, load_vehicle
 
 C = TypeVar("C", bound=Config)
 DIAGNOSTICS_PERIOD = NANOSECONDS
-NEEDED = frozenset(t for n in topics.NODES.values() for t in n.inputs) - {topics.CLOCK}
-"""Topics that some node of the loop reads: a run cannot start before somebody listens to them."""
 
 
 def qos_profile(qos: Qos) -> QoSProfile:
@@ -40,7 +40,7 @@ def qos_profile(qos: Qos) -> QoSProfile:
 
 
 class NodeConfig(Config):
-    """What every node of the loop is told."""
+    """Parameters that every node of the loop has."""
 
     vehicle_file: str = Field("", description="vehicle file; empty: the reference vehicle")
     seed: int = Field(1, ge=0, description="seed of this run's random numbers")
@@ -49,7 +49,7 @@ class NodeConfig(Config):
         description="lockstep (repeatable: wait for all inputs of a stamp) or realtime (use the "
         "newest); the same for all nodes",
     )
-    control_period_s: float = Field(0.05, gt=0.0, description="period of the control loop, s")
+    control_period_s: ControlPeriod = CONTROL_PERIOD_S
 
 
 class UvmsNode(Node):
@@ -62,14 +62,23 @@ class UvmsNode(Node):
     when an input is refused: the fault is logged, counted and reported on /diagnostics.
     """
 
-    def __init__(self, name: str, **options: Any) -> None:
+    role = ""
+    """Its name in the graph, and its row in the table of topics."""
+    configurations: tuple[type[Config], ...] = ()
+    """Configurations whose fields are its parameters."""
+
+    def __init__(self, **options: Any) -> None:
+        name = self.role
         super().__init__(name, **options)
         common = self.config(NodeConfig)
         self.vehicle: Vehicle = load_vehicle(common.vehicle_file or None)
         self.seed = common.seed
         self.lockstep = common.pace == "lockstep"
         self.period = to_nanoseconds(common.control_period_s)
-        self._topics = topics.NODES[name]
+        self.graph = topics.nodes(self.vehicle)
+        self._topics = self.graph[name]
+        # What some node of the loop reads: a run cannot start before it has a subscriber.
+        self._needed = {t for n in self.graph.values() for t in n.inputs} - {topics.CLOCK}
         self._outputs: dict[Topic, Publisher] = {}
         self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
         self._diagnostics = self._sender(topics.DIAGNOSTICS)
@@ -77,7 +86,7 @@ class UvmsNode(Node):
         self._reported = -DIAGNOSTICS_PERIOD
         self._refused = 0
         self._gate: TickGate | None = None
-        self._receivers: dict[str, Any] = {}
+        self._receivers: dict[Topic, Any] = {}
         self.create_service(Trigger, f"{name}/ready", self._answer_ready)
 
     def config(self, model: type[C]) -> C:
@@ -109,7 +118,7 @@ class UvmsNode(Node):
         def receive(data: bytes) -> None:
             self.guard(lambda: callback(from_message(topic, wire.decode(data), names)))
 
-        self._receivers[topic.name] = self.create_subscription(
+        self._receivers[topic] = self.create_subscription(
             message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
         )
 
@@ -118,9 +127,9 @@ class UvmsNode(Node):
         self._senders[topic](signal)
 
     def guard(self, action: Callable[[], None]) -> None:
-        """Run a step; an error of ours is reported and the node goes on with what it had.
+        """Run a step; an error of ours is reported and the node keeps its last good state.
 
-        A plant that diverged has nothing to go on with: that error ends the node.
+        A plant that diverged has no good state left: that error ends the node.
         """
         try:
             action()
@@ -155,33 +164,26 @@ class UvmsNode(Node):
             self.report(stamp, **values)
 
     def names_of(self, topic: Topic) -> tuple[str, ...]:
-        """Names that the topic's values come under: of thrusters or of joints."""
+        """Names of the topic's values: of thrusters or of joints."""
         by_thruster = topic in (topics.THRUSTER_COMMAND, topics.ALLOCATION)
         return self.vehicle.thruster_names if by_thruster else self.vehicle.joint_names
 
     def missing_peers(self) -> list[str]:
-        """What this node still lacks before a run can start, in words.
+        """What this node is still missing before a run can start, as text.
 
-        Each of its endpoints must have found all that the graph holds on the other side: what is
-        sent before that is lost.
+        Each of its endpoints must have matched every peer in the graph: messages published before
+        that are lost.
         """
         lacks = []
-        for name, subscription in self._receivers.items():
-            there, found = self.count_publishers(name), subscription.get_publisher_count()
+        for topic, subscription in self._receivers.items():
+            there, found = self.count_publishers(topic.name), subscription.get_publisher_count()
             if found < max(there, 1):
-                lacks.append(_lack("publishes", name, there, found))
+                lacks.append(_lack(nobody_publishes(topic), there, found))
         for topic, publisher in self._outputs.items():
             there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()
-            if found < max(there, 1 if topic in NEEDED else 0):
-                lacks.append(_lack("subscribes to", topic.name, there, found))
+            if found < max(there, 1 if topic in self._needed else 0):
+                lacks.append(_lack(nobody_reads(topic), there, found))
         return lacks
-
-    def missing_in_graph(self) -> list[str]:
-        """Topics of the loop that nobody in the whole graph publishes or reads, in words."""
-        names = sorted(topic.name for topic in NEEDED)
-        return [f"nobody publishes {n!r}" for n in names if not self.count_publishers(n)] + [
-            f"nobody subscribes to {n!r}" for n in names if not self.count_subscribers(n)
-        ]
 
     def _admit(self, topic: Topic, signal: Any) -> None:
         for tick in self._gate.push(topic.name, signal.stamp, signal) if self._gate else ():
@@ -197,11 +199,12 @@ class UvmsNode(Node):
 
     def _answer_ready(self, _: Any, response: Any) -> Any:
         lacks = self.missing_peers()
-        response.success, response.message = not lacks, "; ".join(lacks)
+        response.success, response.message = not lacks, SEPARATOR.join(lacks)
         return response
 
 
-def _lack(does: str, topic: str, there: int, found: int) -> str:
+def _lack(nobody: str, there: int, found: int) -> str:
+    """Nobody is there, or some are there that have not been found yet."""
     if not there:
-        return f"nobody {does} {topic!r}"
-    return f"{there - found} of {there} that {does} {topic!r} not found yet"
+        return nobody
+    return f"{nobody.removeprefix('nobody ')}: {there - found} of {there} not found yet"

@@ -11,25 +11,30 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 
 from uvms_core.config import Config, validated
+from uvms_core.plugin import PluginConfig
 
 C = TypeVar("C", bound=Config)
+PARAMETERS = "parameters"
+"""Field of a section under which stands what only the chosen part knows."""
 
 
 def declare_config(node: Node, model: type[C]) -> C:
     """Declare every field of `model` (nested ones with dots) and return the validated values.
 
+    Where the model chooses a part by name, the parameters of the part that is chosen are declared
+    under `parameters`.
+
     Raises:
         ConfigError: a value is outside its bounds; the message names it and what is allowed.
+        PluginError: a part that is chosen cannot be found.
     """
     values: dict[str, Any] = {}
-    for path, field, default in _leaves(model, model()):
-        name = ".".join(path)
-        if not node.has_parameter(name):
-            _declare_field(node, name, default, field)
-        value = node.get_parameter_or(name).value
-        if value is not None:
-            _store(values, path, value)
-    return validated(model, values, f"parameters of {node.get_name()}")
+    _declare(node, model(), (), values)
+    config = validated(model, values, f"parameters of {node.get_name()}")
+    if isinstance(config, PluginConfig) and (own := config.part_parameters()) is not None:
+        _declare(node, own(), (PARAMETERS,), values)
+        config = validated(model, values, f"parameters of {node.get_name()}")
+    return config
 
 
 def flatten(config: Config) -> dict[str, Any]:
@@ -37,7 +42,7 @@ def flatten(config: Config) -> dict[str, Any]:
 
     Empty lists are left out: ROS cannot tell their type, and they are the defaults.
     """
-    leaves = _leaves(type(config), config)
+    leaves = _leaves(_resolved(config))
     return {".".join(path): _to_ros(value) for path, _, value in leaves if value != ()}
 
 
@@ -45,13 +50,33 @@ def describe(*models: type[Config]) -> str:
     """The parameters of configurations as text: name, default, bounds and meaning, a line each."""
     lines = []
     for model in models:
-        for path, field, default in _leaves(model, model()):
+        for path, field, default in _leaves(_resolved(model())):
             bounds = [b for b in _bounds(field) if b is not None]
             within = f", {bounds[0]:g} to {bounds[1]:g}" if len(bounds) == 2 else ""
             name = ".".join(path)
             shown = list(default) if isinstance(default, tuple) else default
             lines.append(f"  {name} ({shown}{within})\n      {field.description or ''}")
+        if issubclass(model, PluginConfig):
+            meaning = model.model_fields[PARAMETERS].description
+            lines.append(f"  {PARAMETERS}.NAME\n      {meaning}")
     return "\n".join(lines)
+
+
+def _declare(
+    node: Node, defaults: BaseModel, prefix: tuple[str, ...], values: dict[str, Any]
+) -> None:
+    """Declare the fields of a section, and store what they are set to in `values`."""
+    for path, field, default in _leaves(defaults, prefix):
+        name = ".".join(path)
+        if not node.has_parameter(name):
+            _declare_field(node, name, default, field)
+        value = node.get_parameter_or(name).value
+        if value is not None:
+            _store(values, path, value)
+
+
+def _resolved(config: Config) -> Config:
+    return config.resolved() if isinstance(config, PluginConfig) else config
 
 
 def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
@@ -62,13 +87,13 @@ def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> Non
 
 
 def _leaves(
-    model: type[BaseModel], values: BaseModel, prefix: tuple[str, ...] = ()
+    values: BaseModel, prefix: tuple[str, ...] = ()
 ) -> Iterator[tuple[tuple[str, ...], FieldInfo, Any]]:
-    for name, field in model.model_fields.items():
+    for name, field in type(values).model_fields.items():
         value = getattr(values, name)
         if isinstance(value, BaseModel):
-            yield from _leaves(type(value), value, (*prefix, name))
-        else:
+            yield from _leaves(value, (*prefix, name))
+        elif not (isinstance(values, PluginConfig) and name == PARAMETERS):  # those of no part
             yield (*prefix, name), field, value
 
 

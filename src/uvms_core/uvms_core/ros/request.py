@@ -1,7 +1,7 @@
-"""A question to another node that is asked again while no answer comes.
+"""A service call that is repeated while no answer arrives.
 
 A service may drop its answer where it has not yet found the one who asked (rmw_fastrtps then says
-"client will not receive response"); the asker is never told.
+"client will not receive response"); the client never learns of it.
 """
 
 import time
@@ -11,11 +11,11 @@ from typing import Any
 from rclpy.task import Future
 
 ASK_AGAIN_S = 5.0
-"""Wall time without an answer after which a question is asked again."""
+"""Wall time without an answer after which a request is repeated."""
 
 
 class Request:
-    """Asks without waiting. What is asked must do no harm when it is asked twice.
+    """Sends without waiting. The request must be idempotent.
 
     Args:
         ask: sends the question; the future holds the answer.
@@ -32,11 +32,11 @@ class Request:
 
     @property
     def times_asked(self) -> int:
-        """How often the question was sent."""
+        """How often the request was sent."""
         return len(self._asked)
 
     def answer(self) -> Any:
-        """The first answer that came, be it a late one; else None, and ask where it is time to."""
+        """The first answer, even a late one; None before it, and repeats the request when due."""
         for future in self._asked:
             if future.done():
                 return future.result()

@@ -19,7 +19,7 @@ from rclpy.task import Future
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
 IDLE = 0.2
-"""Longest sleep between two looks at the nodes' deadlines, s."""
+"""Longest sleep between two checks of the nodes' deadlines, s."""
 
 
 def start(args: Sequence[str] | None = None) -> None:
@@ -37,7 +37,7 @@ class Spinner:
     and an `on_wake()` that is then called in the executor's own thread.
 
     While events keep coming the executor does not look at the clock; a callback that comes often
-    calls `yield_turn`, so that deadlines and `until` get their turn all the same.
+    calls `yield_turn`, so that deadlines and `until` are checked all the same.
     """
 
     def __init__(self, nodes: Sequence[Node]) -> None:
@@ -49,8 +49,8 @@ class Spinner:
         self._turn: Future = Future()
         self._turn_ends = 0.0
         self._wakers: list[Any] = [node for node in nodes if hasattr(node, "on_wake")]
-        # Threads that were there before `start` (of a BLAS library, say) do not block the signals;
-        # one that comes to them runs this handler, between two sleeps of the main thread.
+        # Threads created before `start` (by a BLAS library, say) do not block the signals; a signal
+        # delivered to one of them runs this handler, between two sleeps of the main thread.
         for number in SIGNALS:
             signal.signal(number, lambda *_: self._finish())
         threading.Thread(target=self._take_signal, daemon=True).start()
@@ -61,7 +61,7 @@ class Spinner:
         self._executor.wake()
 
     def yield_turn(self) -> None:
-        """From a callback: let `spin` look up, if it has not done so for a while."""
+        """From a callback: let `spin` check deadlines and `until`, if it has not for a while."""
         if time.monotonic() >= self._turn_ends and not self._turn.done():
             self._turn.set_result(None)
 
@@ -76,7 +76,7 @@ class Spinner:
             self.spin_once(IDLE)
 
     def spin_once(self, timeout: float) -> None:
-        """Serve what comes within the time-out, s."""
+        """Serve events for at most the time-out, s."""
         wait = min(timeout, self._sleep())
         self._turn, self._turn_ends = Future(), time.monotonic() + wait
         if not self.done.done():

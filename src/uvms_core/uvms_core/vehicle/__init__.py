@@ -3,6 +3,7 @@
 from uvms_core.vehicle.arm import Arm, DragCylinder, Joint, Link
 from uvms_core.vehicle.environment import Environment
 from uvms_core.vehicle.hull import Attachment, Hull
+from uvms_core.vehicle.limits import joint_limits
 from uvms_core.vehicle.loader import (
     dump_vehicle,
     load_vehicle,
@@ -27,6 +28,7 @@ __all__ = [
     "Thruster",
     "Vehicle",
     "dump_vehicle",
+    "joint_limits",
     "load_vehicle",
     "vehicle_from_data",
     "vehicle_from_yaml",

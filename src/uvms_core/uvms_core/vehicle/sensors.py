@@ -1,15 +1,14 @@
 """The sensors: rate, mounting (lever arm) and errors of each."""
 
-from pydantic import Field
+from collections.abc import Mapping
+from typing import Any
 
-from uvms_core.vehicle.parts import Part, Vector3
+from pydantic import BaseModel, ConfigDict, Field, model_validator
 
+from uvms_core.vehicle.further_sensors import Sensor, further_sections, section_class
+from uvms_core.vehicle.parts import Part
 
-class Sensor(Part):
-    """What every mounted sensor has."""
-
-    rate_hz: float = Field(gt=0.0, description="samples per second")
-    position_m: Vector3 = Field(description="lever arm: sensor in the body frame, m")
+__all__ = ["Dvl", "Encoders", "Gps", "Imu", "Pressure", "Sensor", "Sensors"]
 
 
 class Imu(Sensor):
@@ -56,10 +55,34 @@ class Encoders(Part):
 
 
 class Sensors(Part):
-    """All sensors of the vehicle."""
+    """All sensors of the vehicle: the built-in ones, and any that an installed package brings.
+
+    The section of a further sensor has the name under which the package registers it in
+    `uvms.sensors`.
+    """
+
+    model_config = ConfigDict(extra="allow")
 
     imu: Imu = Field(description="gyrocompass and inertial unit")
     dvl: Dvl = Field(description="Doppler velocity log")
     pressure: Pressure = Field(description="depth from pressure")
     gps: Gps = Field(description="satellite receiver")
     encoders: Encoders = Field(description="joint encoders")
+
+    @property
+    def mounted(self) -> dict[str, Sensor]:
+        """Sections of the sensors that are mounted on the body, by name."""
+        return {name: section for name, section in self if isinstance(section, Sensor)}
+
+    @model_validator(mode="before")
+    @classmethod
+    def _check_further(cls, data: Any) -> Any:
+        if not isinstance(data, Mapping):
+            return data
+        further = {name: data[name] for name in data if name not in cls.model_fields}
+        return {**data, **further_sections(further, tuple(cls.model_fields))}
+
+    @classmethod
+    def field_model(cls, name: str) -> type[BaseModel] | None:
+        """Class of a section, a further sensor's included."""
+        return super().field_model(name) or section_class(name)

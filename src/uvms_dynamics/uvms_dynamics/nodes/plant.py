@@ -11,7 +11,7 @@ from uvms_core import diagnostics, topics
 from uvms_core.config import Config
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
-from uvms_core.ros.roll_call import NOT_UP, RollCall
+from uvms_core.ros.roll_call import SEPARATOR, RollCall, unread
 from uvms_core.signals import (
     JointCommand,
     ThrusterCommand,
@@ -19,10 +19,14 @@ from uvms_core.signals import (
     to_seconds,
 )
 from uvms_dynamics.simulation import Plant, PlantConfig
+from uvms_dynamics.simulation.publication import plant_outputs
+from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
-"""How often an idle plant looks whether all its peers are there, s of wall time."""
+"""How often an idle plant checks whether all its peers are there, s of wall time."""
+NOTICE = 10.0
+"""How often it logs what is still missing, s of wall time."""
 SETTLE = 1.0
 """How long all must have been there before the start, s of wall time."""
 
@@ -53,13 +57,14 @@ class PlantNode(UvmsNode):
     Services: `start` (begin, where `auto_start` is false) and `pause` (hold simulated time).
     """
 
+    role = "plant"
     configurations = (
         PaceConfig,
         PlantConfig,
     )
 
     def __init__(self, **options) -> None:
-        super().__init__("plant", **options)
+        super().__init__(**options)
         self._plant = Plant(self.vehicle, self.config(PlantConfig), self.seed)
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
@@ -70,18 +75,21 @@ class PlantNode(UvmsNode):
         self._deadline: float | None = time.monotonic() + POLL
         self._timeouts = 0
         self._complete_since: float | None = None
-        self._roll_call = RollCall(self, (name for name in topics.NODES if name != "plant"))
+        others = [name for name in self.graph if name != self.role]
+        self._roll_call = RollCall(self, others, foreign=None, graph=self.graph)
+        self._sensor_topics = in_order_of_publication(self.vehicle)
+        self._notice = time.monotonic() + NOTICE
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
             self.listen(topic, partial(self._take, topic.name))
         self.create_service(Trigger, "start", self._answer_start)
         self.create_service(SetBool, "pause", self._answer_pause)
 
     def deadline(self) -> float | None:
-        """When the plant wants to be woken, in monotonic wall seconds."""
+        """When the plant is to be woken, monotonic wall time in s."""
         return self._deadline
 
     def on_wake(self) -> None:
-        """The deadline passed: look for peers, or go on without the missing commands."""
+        """The deadline passed: check for peers, or continue without the missing commands."""
         if not self._running:
             self._deadline = time.monotonic() + POLL
             if self._wanted:
@@ -101,10 +109,15 @@ class PlantNode(UvmsNode):
             self._start()
 
     def _all_there(self) -> bool:
-        if self.missing_peers() or self.missing_in_graph():
-            return False
-        # A node of the user's own may have no such service: then the graph must do.
-        return all(lack == NOT_UP for lack in self._roll_call.poll().values())
+        lacks = self._roll_call.poll()
+        idle = unread(self._roll_call.foreign, self.graph)
+        if own := [lack for lack in self.missing_peers() if lack not in idle]:
+            lacks[self.role] = SEPARATOR.join(own)
+        if lacks and time.monotonic() > self._notice:
+            self._notice = time.monotonic() + NOTICE
+            missing = "\n".join(f"  {role}: {lack}" for role, lack in lacks.items())
+            self.get_logger().info(f"waiting for\n{missing}")
+        return not lacks
 
     def _start(self) -> None:
         self._running = True
@@ -134,19 +147,8 @@ class PlantNode(UvmsNode):
 
     def _publish_tick(self) -> None:
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
-        self.send(topics.CLOCK, stamp)
-        self.send(topics.TRUE_ODOMETRY, truth.odometry)
-        self.send(topics.TRUE_JOINT_STATES, truth.joints)
-        self.send(topics.TRUE_DISTURBANCE, truth.disturbance)
-        self.send(topics.JOINT_STATES, sensors.joints)
-        for topic, samples in (
-            (topics.DVL, sensors.dvl),
-            (topics.PRESSURE, sensors.pressure),
-            (topics.GPS, sensors.gps),
-            (topics.IMU, sensors.imu),
-        ):
-            for sample in samples:
-                self.send(topic, sample)
+        for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
+            self.send(topic, signal)
         self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
 
     @property
@@ -170,7 +172,7 @@ class PlantNode(UvmsNode):
         self._timeouts += 1
         text = (
             f"t = {to_seconds(self._plant.stamp):.2f} s: no {' and no '.join(missing)} in time; "
-            "going on with the safe command"
+            "continuing with the safe command"
         )
         self.get_logger().warning(text)
         self.report(self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts)
@@ -199,7 +201,10 @@ class PlantNode(UvmsNode):
         return self._commands[topics.JOINT_COMMAND.name]
 
     def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = True, "already running"  # asked again: no fault
+        response.success, response.message = (
+            True,
+            "already running",
+        )
         if not self._running:
             response.message = "started"
             self._start()
@@ -209,8 +214,8 @@ class PlantNode(UvmsNode):
         was_paused, self._paused, response.success = self._paused, request.data, True
         response.message = f"paused at {to_seconds(self._plant.stamp):.2f} s"
         if not request.data:
-            response.message = f"going on from {to_seconds(self._plant.stamp):.2f} s"
-            if was_paused:  # else time would leap a period
+            response.message = f"continuing from {to_seconds(self._plant.stamp):.2f} s"
+            if was_paused:  # otherwise time would skip a period
                 self._resume()
         return response
 

@@ -1,13 +1,25 @@
 """Parameters of the disturbance observer."""
 
+from typing import ClassVar
+
 from pydantic import Field
 
-from uvms_core.config import Config
+from uvms_core import registry
+from uvms_core.plugin import PluginConfig, Slot
+from uvms_observer.interfaces import ObserverLaw
 
 
-class ObserverConfig(Config):
-    """What is fed forward, and how quickly accelerations and the external wrench are followed."""
+class ObserverConfig(PluginConfig):
+    """What is fed forward, and bandwidths of accelerations and external wrench."""
 
+    slot: ClassVar[Slot] = Slot(registry.OBSERVERS, "law", ObserverLaw)
+
+    law: str = Field(
+        "momentum_residual",
+        description="disturbance observer: momentum_residual (eq. (21) by the model, the rest by"
+        " the momentum residual), that of an installed package, or a class as"
+        " my_package.my_module:MyObserver",
+    )
     external: bool = Field(
         True,
         description="feed the external wrench forward as well (current, payload, tether, model "

@@ -1,9 +1,9 @@
-"""The external wrench: what moves the vehicle and neither the model nor the thrusters explain.
+"""The external wrench: what acts on the vehicle besides model and thrusters.
 
 A residual of the generalized momentum p = M(q) zeta (De Luca and Mattone 2003), of which the
 vehicle's six rows are kept:
 
-    r = K [p(t) - p(0) - integral (tau + what the model says + r) dt],  so that  r' = K (F_ext - r):
+    r = K [p(t) - p(0) - integral (tau + what the model gives + r) dt], so that  r' = K (F_ext - r):
 
 a first-order estimate of F_ext with bandwidth K, stable for every K > 0, which never differentiates
 a signal. In steps of dt, with all states at the middle of the interval, the same sum reads
@@ -55,12 +55,12 @@ class ExternalWrenchObserver:
 def unexplained_wrench(
     model: Model, dt: float, before: Moment, now: Moment, thrust: Array
 ) -> Array:
-    """Mean wrench (6,) over the interval that the motion asks for beyond the thrusters' wrench."""
+    """Mean wrench (6,) over the interval that the motion needs beyond the thrusters' wrench."""
     middle = Moment(*(0.5 * (a + b) for a, b in zip(_same_sign(before, now), now, strict=True)))
     quaternion = middle.quaternion / np.linalg.norm(middle.quaternion)
     nu_dot, q_ddot = (now.nu - before.nu) / dt, (now.q_dot - before.q_dot) / dt
-    asked = inverse_dynamics(model, quaternion, middle.nu, nu_dot, middle.q, middle.q_dot, q_ddot)
-    return asked[:6] - thrust
+    needed = inverse_dynamics(model, quaternion, middle.nu, nu_dot, middle.q, middle.q_dot, q_ddot)
+    return needed[:6] - thrust
 
 
 def _same_sign(moment: Moment, other: Moment) -> Moment:

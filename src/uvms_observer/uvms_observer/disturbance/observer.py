@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_core.freshness import check_age
+from uvms_core import checks
 from uvms_core.signals import (
     Array,
     DisturbanceBudget,
@@ -13,7 +13,6 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import build_model, coupling_wrench, restoring_wrench
-from uvms_observer import checks
 from uvms_observer.disturbance.config import ObserverConfig
 from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment
 from uvms_observer.disturbance.thrust_lag import ThrustLag
@@ -23,11 +22,11 @@ NOT_MOVING = np.zeros(6)
 
 
 class DisturbanceObserver:
-    """Restoring and coupling wrench of the estimated state through the model, and what is left.
+    """Restoring and coupling wrench of the estimated state through the model, and the remainder.
 
     Eq. (21): F_dis = restoring(R, q) + coupling(nu, nu_dot, q, q_dot, q_ddot), a wrench that acts
     ON the vehicle, body frame, about its origin. Accelerations come from tracking filters, the
-    external wrench from a momentum residual. The water is taken to be at rest: what a current does
+    external wrench from a momentum residual. The water is assumed at rest: the effect of a current
     is part of the external wrench.
 
     Args:
@@ -38,7 +37,7 @@ class DisturbanceObserver:
     def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
         self._model = build_model(vehicle)
         self._config = config
-        self._n = vehicle.n_joints
+        self._joint_names = vehicle.joint_names
         self._encoder_variances = _encoder_variances(vehicle)
         self._joints = TrackingFilter(3, config.joint_jerk_rad_s3)
         self._linear = TrackingFilter(2, config.vehicle_jerk_m_s3)
@@ -51,10 +50,10 @@ class DisturbanceObserver:
     def step(
         self, odometry: Odometry, joints: JointStates, achieved: Wrench | None
     ) -> tuple[DisturbanceBudget, Wrench]:
-        """The budget at this stamp, and the total that the controller shall take off its wrench.
+        """The budget at this stamp, and the total that the controller takes off its wrench.
 
         The budget's coupling has the vehicle's own acceleration in it, as eq. (16) and the plant
-        have. The total has not: the controller's M covers it, so that the arm's inertia counts
+        have. The total does not: the controller's M covers it, so that the arm's inertia counts
         once.
 
         Args:
@@ -100,14 +99,11 @@ class DisturbanceObserver:
     def _check(self, odometry: Odometry, joints: JointStates, achieved: Wrench | None) -> None:
         if self._stamp is not None:
             checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
-        check_age("joint_states", joints.stamp, odometry.stamp)
-        checks.quaternion("odometry.quaternion", odometry.quaternion)
-        checks.array("odometry.nu", odometry.nu, (6,))
-        checks.array("odometry.twist_covariance", odometry.twist_covariance, (6, 6))
-        checks.array("joints.position", joints.position, (self._n,))
-        checks.array("joints.velocity", joints.velocity, (self._n,))
+        checks.age("joint_states", joints.stamp, odometry.stamp)
+        checks.check("odometry", odometry)
+        checks.check("joint_states", joints, n=self._joint_names)
         if achieved is not None:
-            checks.array("achieved.wrench", achieved.wrench, (6,))
+            checks.check("wrench_achieved", achieved)
 
 
 def _encoder_variances(vehicle: Vehicle) -> Array:

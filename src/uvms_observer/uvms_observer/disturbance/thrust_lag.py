@@ -1,4 +1,4 @@
-"""What the thrusters really gave over an interval: the commanded wrench with their lag.
+"""Wrench of the thrusters over an interval: the commanded wrench with their lag.
 
 The allocator reports the wrench of the thrusts that it commands; a thruster follows its command by
 T' = (T_c - T) / tau. Over an interval dt with constant command the mean of T is
@@ -6,7 +6,7 @@ T' = (T_c - T) / tau. Over an interval dt with constant command the mean of T is
     T_c + (T_0 - T_c) (1 - exp(-dt/tau)) tau / dt.
 
 The thrusts follow from the wrench by the least-norm inverse of the thruster matrix, which is exact
-when thrusters that share an axis share a time constant. Slew limits are left out.
+when thrusters that share an axis share a time constant. Slew limits are neglected.
 """
 
 import numpy as np

@@ -1,4 +1,4 @@
-"""The state that the filter starts from: attitude of the first IMU sample, position of config."""
+"""The state at the start: attitude of the first IMU sample, position of the configuration."""
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from uvms_observer.navigation.state import (
 )
 
 
-def aligned(sample: ImuSample, sensors: Installation, config: NavigationConfig) -> NavigationState:
+def aligned(sample: ImuSample, imu: Installation, config: NavigationConfig) -> NavigationState:
     """At rest at the configured position, with the measured attitude.
 
     The attitude is off by the gyrocompass's noise and by its bias, so that it starts correlated
@@ -25,14 +25,13 @@ def aligned(sample: ImuSample, sensors: Installation, config: NavigationConfig) 
     quaternion = sample.quaternion / np.linalg.norm(sample.quaternion)
     state.quaternion[:] = quaternion
     P, R = state.covariance, quat_to_matrix(quaternion)
-    state.position[:] = config.initial_position_m - R @ sensors.body
+    state.position[:] = config.initial_position_m - R @ imu.body
     horizontal, vertical = config.initial_position_std_m, config.initial_depth_std_m
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2
-    P[range(9, 18), range(9, 18)] = sensors.process.bias_variance
-    P[[18, 19], [18, 19]] = sensors.instrument_variance
-    bias = np.diag(sensors.process.bias_variance[6:])
-    P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(sensors.attitude_variance)) @ R.T
+    P[range(9, 18), range(9, 18)] = imu.process.bias_variance
+    bias = np.diag(imu.process.bias_variance[6:])
+    P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(imu.attitude_variance)) @ R.T
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias
     P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T
     return state

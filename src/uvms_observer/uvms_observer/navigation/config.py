@@ -1,14 +1,18 @@
-"""Parameters of the navigation filter; what the sensors are like is in the vehicle file."""
+"""Parameters of the navigation filter; the sensors' noise is in the vehicle file."""
+
+from typing import ClassVar
 
 from pydantic import Field
 
+from uvms_core import registry
 from uvms_core.config import Config
-
-Vector3 = tuple[float, float, float]
+from uvms_core.plugin import PluginConfig, Slot
+from uvms_core.start import StartConfig
+from uvms_observer.interfaces import NavigationEstimator
 
 
 class NoiseFloor(Config):
-    """Least measurement noise (std) that the filter believes: no sensor is perfect to it."""
+    """Least measurement noise (std) that the filter assumes: no sensor is perfect to it."""
 
     attitude_deg: float = Field(0.001, gt=0.0, description="roll, pitch and heading, deg")
     velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
@@ -16,13 +20,15 @@ class NoiseFloor(Config):
     position_m: float = Field(1e-2, gt=0.0, description="GPS, m")
 
 
-class NavigationConfig(Config):
+class NavigationConfig(PluginConfig, StartConfig):
     """How the navigation filter starts and how far it trusts model and sensors."""
 
-    initial_position_m: Vector3 = Field(
-        (0.0, 0.0, 0.0),
-        description="where the mission starts: body origin in map_ned, m; the depth comes from "
-        "the first pressure sample",
+    slot: ClassVar[Slot] = Slot(registry.NAVIGATION_FILTERS, "filter", NavigationEstimator)
+
+    filter: str = Field(
+        "error_state_ekf",
+        description="navigation filter: error_state_ekf (eq. (20)), that of an installed package,"
+        " or a class as my_package.my_module:MyFilter",
     )
     initial_position_std_m: float = Field(
         0.01, gt=0.0, description="std of the initial north and east, m"
@@ -43,18 +49,18 @@ class NavigationConfig(Config):
         0.25,
         ge=0.0,
         le=10.0,
-        description="a sample that comes this much late is still taken, at its own stamp, s",
+        description="a sample that comes this much late is still used, at its own stamp, s",
     )
     gate_probability: float = Field(
         0.9999,
         gt=0.5,
         lt=1.0,
-        description="share of good measurements that the chi-square gate lets in",
+        description="share of good measurements that the chi-square gate accepts",
     )
     gate_timeout_s: float = Field(
         5.0,
         gt=0.0,
-        description="when a sensor has been refused for this long the filter doubts itself: it "
-        "widens its covariance and takes the sensor in, s",
+        description="when a sensor has been rejected for this long the estimate is taken to be "
+        "wrong: its covariance is widened and the sensor is used, s",
     )
     noise_floor: NoiseFloor = NoiseFloor()

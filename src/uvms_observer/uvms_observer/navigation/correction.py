@@ -1,9 +1,10 @@
-"""The Kalman correction of one measurement: gate, gain, Joseph form, and putting the error back.
+"""The Kalman correction by one measurement: gate, gain, Joseph form, error added to the state.
 
     S = H P H^T + N,  d^2 = r^T S^-1 r,  K = P H^T S^-1,
     e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
 
-The Joseph form keeps P positive semidefinite under rounding. The readable twin is `reference.py`.
+The Joseph form keeps P positive semidefinite under rounding. The same in plain numpy is
+`numpy_reference.py`.
 """
 
 import numpy as np
@@ -11,6 +12,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
+from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
@@ -22,7 +24,7 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
         H: (m, 20) derivative of the measurement by the error state.
         residual: (m,) measured minus expected.
         N: (m, m) covariance of the measurement's noise.
-        gate: largest d^2 that is let in.
+        gate: largest d^2 that is accepted.
 
     Returns:
         d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed.
@@ -38,7 +40,7 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
         return distance
     K = PHt @ S_inverse
     _correct_covariance(state.covariance, K, H, N)
-    _put_back(state, K @ residual)
+    _add_error(state, K @ residual)
     return distance
 
 
@@ -58,17 +60,7 @@ def _correct_covariance(P: Array, K: Array, H: Array, N: Array) -> None:
 
 
 @exact_inner
-def transposed(matrix: Array) -> Array:
-    """The transpose, row by row in memory (numba takes seconds to compile numpy's own copies)."""
-    out = np.empty((matrix.shape[1], matrix.shape[0]))
-    for i in range(matrix.shape[0]):
-        for j in range(matrix.shape[1]):
-            out[j, i] = matrix[i, j]
-    return out
-
-
-@exact_inner
-def _put_back(state: NavigationState, e: Array) -> None:
+def _add_error(state: NavigationState, e: Array) -> None:
     """Add the error, state <- state (+) e; the attitude error turns about the axes of map_ned."""
     turned = quat_multiply(rotation_vector_to_quat(e[6:9]), state.quaternion)
     length = np.sqrt(turned.dot(turned))

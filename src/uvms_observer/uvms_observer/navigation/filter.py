@@ -1,11 +1,14 @@
-"""The navigation filter, eq. (20): gyrocompass and IMU, DVL, pressure and GPS to Odometry."""
+"""The navigation filter, eq. (20): gyrocompass and IMU, DVL, pressure, GPS ... to Odometry."""
 
 from collections import deque
-from collections.abc import Iterable, Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from uvms_core import checks
 from uvms_core.errors import SignalError
+from uvms_core.sensors import INERTIAL
 from uvms_core.signals import (
     DvlSample,
     GpsSample,
@@ -19,7 +22,7 @@ from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
-from uvms_observer.navigation.samples import NAMES, Sample, check, in_order
+from uvms_observer.navigation.samples import Instruments, Reading, in_order
 from uvms_observer.navigation.state import NavigationState
 
 
@@ -27,9 +30,9 @@ class NavigationFilter:
     """Error-state extended Kalman filter, eq. (20); derivation in docs/navigation.md.
 
     Inertial readings carry the state from stamp to stamp; every other reading corrects it at its
-    own stamp, at the point where its sensor sits. A silent sensor only lets the covariance grow. A
-    sample that comes late, but within the configured latency, is put where it belongs: the filter
-    goes back to the step before it and takes all samples since again.
+    own stamp, at the point where its sensor is mounted. Without a sensor's samples the covariance
+    grows. A sample that comes late, but within the configured latency, is used at its own stamp:
+    the filter goes back to the step before it and processes all samples since then again.
 
     Args:
         vehicle: sensors with lever arms and noise, water, datum of the map.
@@ -37,9 +40,11 @@ class NavigationFilter:
     """
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
-        self._estimator = Estimator(installation(vehicle, config), config)
+        self._instruments = Instruments(vehicle, config)
+        imu = installation(vehicle, config)
+        self._estimator = Estimator(imu, self._instruments.measurements, config)
         self._latency = to_nanoseconds(config.latency_s)
-        self._history: deque[tuple[Estimator, list[Sample]]] = deque()
+        self._history: deque[tuple[Estimator, list[Reading]]] = deque()
         self._stamp = -1  # of the last step
         self._newest: dict[str, int] = {}  # stamp of the newest sample, by sensor
         self.rejected = 0
@@ -54,52 +59,70 @@ class NavigationFilter:
         self,
         stamp: int,
         imu: Sequence[ImuSample],
-        dvl: Sequence[DvlSample],
-        pressure: Sequence[PressureSample],
-        gps: Sequence[GpsSample],
+        dvl: Sequence[DvlSample] = (),
+        pressure: Sequence[PressureSample] = (),
+        gps: Sequence[GpsSample] = (),
+        **further: Sequence[Any],
     ) -> Odometry:
-        """Take the samples since the last step, by their stamps; returns the estimate at `stamp`.
+        """Use the samples since the last step, by their stamps; returns the estimate at `stamp`.
+
+        Args:
+            stamp: ns.
+            imu, dvl, pressure, gps: samples of the built-in sensors.
+            further: of the vehicle's other sensors, by name.
 
         Raises:
             SignalError: a stamp is out of order, a value is not finite or has a wrong shape. The
-                filter is as it was before; `screen` takes such samples out beforehand.
+                filter is as it was before; `step_screened` leaves out such samples instead.
             NotAlignedError: no IMU sample has come yet.
         """
-        samples: list[Sample] = [*imu, *dvl, *pressure, *gps]
-        good, faults = self.screen(stamp, samples)
+        groups = {"imu": imu, "dvl": dvl, "pressure": pressure, "gps": gps, **further}
+        good, faults = self._screen(stamp, groups)
         if faults:
             raise faults[0]
-        if self._estimator.time is None and not imu:
-            raise NotAlignedError("navigation has had no IMU sample yet; it needs an attitude")
-        self._newest.update((NAMES[type(sample)], sample.stamp) for sample in good)
-        self._stamp = stamp
-        self._run(stamp, good)
-        return self._estimator.odometry()
+        return self._step(stamp, good)
 
-    def screen(
-        self, stamp: int, samples: Iterable[Sample]
-    ) -> tuple[list[Sample], list[SignalError]]:
-        """The samples that `step` will take, in order, and an error for each that it will not.
+    def step_screened(
+        self, stamp: int, samples: Mapping[str, Sequence[Any]]
+    ) -> tuple[Odometry, list[SignalError]]:
+        """As `step`, with samples by sensor; those that are refused are left out.
+
+        Returns:
+            The estimate, and an error for each sample that was refused.
 
         Raises:
-            SignalError: the stamp itself is not after the last step's.
+            SignalError: the stamp itself is not after the last step's, or a sensor is unknown.
+            NotAlignedError: no IMU sample has come yet.
         """
-        if stamp <= self._stamp:
-            raise SignalError(
-                f"stamp is {stamp} ns; it must be after the last step's, {self._stamp} ns"
-            )
+        good, faults = self._screen(stamp, samples)
+        return self._step(stamp, good), faults
+
+    def _screen(
+        self, stamp: int, groups: Mapping[str, Sequence[Any]]
+    ) -> tuple[list[Reading], list[SignalError]]:
+        """The readings that are good, in order, and an error for each that is not."""
+        checks.later("stamp", stamp, self._stamp, "the last step's")
         newest, good, faults = dict(self._newest), [], []
-        for sample in in_order(samples):
+        for reading in self._instruments.readings(groups):
             try:
-                self._check_stamp(sample, stamp, newest)
-                check(sample)
+                self._check_stamp(reading, stamp, newest)
+                checks.check(reading.name, reading.sample)
             except SignalError as fault:
                 faults.append(fault)
             else:
-                newest[NAMES[type(sample)]] = sample.stamp
-                good.append(sample)
+                newest[reading.name] = reading.stamp
+                good.append(reading)
         self.rejected += len(faults)
         return good, faults
+
+    def _step(self, stamp: int, readings: list[Reading]) -> Odometry:
+        inertial = any(reading.name == INERTIAL.name for reading in readings)
+        if self._estimator.time is None and not inertial:
+            raise NotAlignedError("navigation has had no IMU sample yet; it needs an attitude")
+        self._newest.update((reading.name, reading.stamp) for reading in readings)
+        self._stamp = stamp
+        self._run(stamp, readings)
+        return self._estimator.odometry()
 
     def status(self) -> dict[str, int | float]:
         """Counters for diagnostics, and the uncertainty (std) of the position in m."""
@@ -112,34 +135,33 @@ class NavigationFilter:
         counts["position_std_m"] = float(np.sqrt(variance))
         return counts
 
-    def _check_stamp(self, sample: Sample, stamp: int, newest: dict[str, int]) -> None:
-        name = NAMES[type(sample)]
-        what = f"{name}.stamp is {sample.stamp} ns; it must"
-        last, oldest = newest.get(name, -1), self._stamp - self._latency
-        if sample.stamp > stamp:
+    def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
+        what = f"{reading.name}.stamp is {reading.stamp} ns; it must"
+        last, oldest = newest.get(reading.name, -1), self._stamp - self._latency
+        if reading.stamp > stamp:
             raise SignalError(f"{what} not be after the step's, {stamp} ns")
-        if sample.stamp <= last:
+        if reading.stamp <= last:
             raise SignalError(f"{what} be after the last one's, {last} ns")
-        if sample.stamp < oldest:
+        if reading.stamp < oldest:
             raise SignalError(f"{what} not be before the filter's time less latency, {oldest} ns")
 
-    def _run(self, stamp: int, samples: list[Sample]) -> None:
-        samples = self._rewind(samples)
-        self._history.append((self._estimator.copied(), samples))
-        for sample in samples:
-            self._estimator.take(sample)
+    def _run(self, stamp: int, readings: list[Reading]) -> None:
+        readings = self._rewind(readings)
+        self._history.append((self._estimator.copied(), readings))
+        for reading in readings:
+            self._estimator.take(reading)
         self._estimator.advance(stamp)
         while len(self._history) > 1 and _time(self._history[1][0]) < stamp - self._latency:
             self._history.popleft()
 
-    def _rewind(self, samples: list[Sample]) -> list[Sample]:
-        """Go back before the first sample; returns all samples to take from there, in order."""
-        late = [sample for sample in samples if sample.stamp <= _time(self._estimator)]
+    def _rewind(self, readings: list[Reading]) -> list[Reading]:
+        """Go back before the first reading; returns all readings to use from there, in order."""
+        late = [reading for reading in readings if reading.stamp <= _time(self._estimator)]
         self.late += len(late)
-        while samples and samples[0].stamp <= _time(self._estimator):
+        while readings and readings[0].stamp <= _time(self._estimator):
             self._estimator, again = self._history.pop()
-            samples = in_order([*again, *samples])
-        return samples
+            readings = in_order([*again, *readings])
+        return readings
 
 
 def _time(estimator: Estimator) -> int:

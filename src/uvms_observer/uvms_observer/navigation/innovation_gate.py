@@ -1,9 +1,9 @@
-"""The innovation gate of one sensor: lets in what is likely, counts, and never locks out for good.
+"""The innovation gate of one sensor: rejects what is unlikely, but no sensor for ever.
 
-A residual's squared Mahalanobis distance is chi-square distributed when filter and sensor are
-sound. Beyond the gate a sample is kept out. But if every sample is kept out for a long time, it is
-the filter that is wrong: then its covariance is widened by distance / gate, which makes the
-residual just likely, and the sample is taken.
+A residual's squared Mahalanobis distance is chi-square distributed when the models of filter and
+sensor are right. Beyond the gate a sample is rejected. If every sample is rejected for a long time,
+the estimate is taken to be wrong: its covariance is multiplied by distance / gate, which puts the
+residual at the gate, and the sample is used.
 """
 
 from collections.abc import Callable
@@ -15,12 +15,12 @@ from uvms_core.signals import to_nanoseconds
 
 
 class Tally(NamedTuple):
-    """What became of one sensor's samples."""
+    """Counts of one sensor's samples."""
 
     accepted: int = 0
-    gated: int = 0  # kept out
-    recovered: int = 0  # taken by widening the covariance; counted among the accepted too
-    since: int | None = None  # ns, stamp of the last one taken, or of the first one
+    gated: int = 0  # rejected
+    recovered: int = 0  # used after widening the covariance; also counted as accepted
+    since: int | None = None  # ns, stamp of the last one used, or of the first one
 
 
 class InnovationGate:
@@ -28,8 +28,8 @@ class InnovationGate:
 
     Args:
         size: dimension of the measurement.
-        probability: share of good samples let in.
-        timeout_s: how long all may be kept out, s.
+        probability: share of good samples that is accepted.
+        timeout_s: how long all may be rejected, s.
     """
 
     def __init__(self, size: int, probability: float, timeout_s: float) -> None:

@@ -1,4 +1,4 @@
-"""What the filter takes from the vehicle file: lever arms from the IMU, and the sensors' errors."""
+"""What the filter takes of the inertial unit from the vehicle file: SI units, variances."""
 
 from typing import NamedTuple
 
@@ -11,51 +11,37 @@ from uvms_observer.navigation.propagation import ProcessNoise
 
 
 class Installation(NamedTuple):
-    """Sensors as the filter needs them: SI units, variances instead of deviations."""
+    """The inertial unit as the filter needs it."""
 
-    body: Array  # (3,) m, from the IMU to the body origin, body axes; so are the next three
-    dvl: Array
-    pressure: Array
-    gps: Array
+    body: Array  # (3,) m, from the IMU to the body origin, body axes
     gravity: float  # m/s^2
     process: ProcessNoise
     attitude_variance: Array  # (3,) rad^2, gyrocompass's white noise about the body axes
     rate_variance: float  # rad^2/s^2, white noise of one gyro sample
-    velocity_variance: float  # m^2/s^2
-    depth_variance: float  # m^2
-    position_variance: Array  # (3,) m^2, north, east, down
-    instrument_variance: Array  # (2,) of the DVL's scale, and of the depth's bias in m^2
-    surface_pressure: float  # Pa
-    pressure_gradient: float  # Pa/m
-    datum: tuple[float, float]  # deg, latitude and longitude of map_ned's origin
 
 
 def installation(vehicle: Vehicle, config: NavigationConfig) -> Installation:
-    """The sensors of this vehicle, with the configuration's factors and floors on their noise."""
-    sensors, sea, floor = vehicle.sensors, vehicle.environment, config.noise_floor
-    imu, dvl, pressure, gps = sensors.imu, sensors.dvl, sensors.pressure, sensors.gps
-    gradient = sea.water_density_kg_m3 * sea.gravity_m_s2
-    tilt = max(imu.roll_pitch_noise_deg, floor.attitude_deg)
-    heading = max(imu.heading_noise_deg, floor.attitude_deg)
-    horizontal = max(gps.horizontal_noise_m, floor.position_m)
-    vertical = max(gps.vertical_noise_m, floor.position_m)
+    """The unit of this vehicle, with the configuration's factors and floors on its noise."""
     return Installation(
-        body=-np.array(imu.position_m),
-        dvl=np.subtract(dvl.position_m, imu.position_m),
-        pressure=np.subtract(pressure.position_m, imu.position_m),
-        gps=np.subtract(gps.position_m, imu.position_m),
-        gravity=sea.gravity_m_s2,
+        body=-np.array(vehicle.sensors.imu.position_m),
+        gravity=vehicle.environment.gravity_m_s2,
         process=_process_noise(vehicle, config),
-        attitude_variance=np.radians([tilt, tilt, heading]) ** 2,
-        rate_variance=float(np.radians(imu.gyro_noise_deg_s)) ** 2,
-        velocity_variance=max(dvl.noise_m_s, floor.velocity_m_s) ** 2,
-        depth_variance=max(pressure.noise_pa / gradient, floor.depth_m) ** 2,
-        position_variance=np.array([horizontal, horizontal, vertical]) ** 2,
-        instrument_variance=np.array([dvl.scale_error, pressure.bias_pa / gradient]) ** 2,
-        surface_pressure=sea.atmospheric_pressure_pa,
-        pressure_gradient=gradient,
-        datum=(sea.datum_latitude_deg, sea.datum_longitude_deg),
+        attitude_variance=attitude_variance(vehicle, config),
+        rate_variance=rate_variance(vehicle),
     )
+
+
+def attitude_variance(vehicle: Vehicle, config: NavigationConfig) -> Array:
+    """White noise of the gyrocompass about the body axes, (3,) rad^2."""
+    imu, floor = vehicle.sensors.imu, config.noise_floor.attitude_deg
+    tilt = max(imu.roll_pitch_noise_deg, floor)
+    heading = max(imu.heading_noise_deg, floor)
+    return np.radians([tilt, tilt, heading]) ** 2
+
+
+def rate_variance(vehicle: Vehicle) -> float:
+    """White noise of one gyro sample, rad^2/s^2."""
+    return float(np.radians(vehicle.sensors.imu.gyro_noise_deg_s)) ** 2
 
 
 def _process_noise(vehicle: Vehicle, config: NavigationConfig) -> ProcessNoise:

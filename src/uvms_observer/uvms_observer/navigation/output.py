@@ -10,8 +10,7 @@ import numpy as np
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
-from uvms_observer.navigation.correction import transposed
-from uvms_observer.navigation.measurements import body_rate
+from uvms_observer.navigation.arrays import body_rate, transposed
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
@@ -37,7 +36,7 @@ def _twist(
 ) -> tuple[Array, Array]:
     """Velocity nu (6,) of the body origin over ground and its covariance (6, 6), body frame.
 
-    The rate is the gyro's, so that its noise reads through, into the velocity by the lever.
+    The rate is the gyro's, so that its noise is part of the result, of the velocity by the lever.
     """
     R = quat_to_matrix(state.quaternion)
     arm, turned = skew(lever), R.T @ skew(state.velocity)

@@ -1,57 +1,58 @@
-"""Samples of all sensors, checked and in the order of their stamps."""
+"""Samples of all sensors in the order of their stamps."""
 
-from collections.abc import Callable, Iterable
-from typing import Any
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any, NamedTuple
 
-from uvms_core.signals import DvlSample, GpsSample, ImuSample, PressureSample
-from uvms_observer import checks
-
-Sample = ImuSample | DvlSample | PressureSample | GpsSample
-
-NAMES: dict[type, str] = {
-    ImuSample: "imu",
-    DvlSample: "dvl",
-    PressureSample: "pressure",
-    GpsSample: "gps",
-}
-_ORDER = {kind: place for place, kind in enumerate(NAMES)}
+from uvms_core import registry
+from uvms_core.errors import SignalError
+from uvms_core.sensors import sensor_types
+from uvms_core.vehicle import Vehicle
+from uvms_observer.navigation.config import NavigationConfig
+from uvms_observer.navigation.measurements.base import Measurement
 
 
-def in_order(samples: Iterable[Sample]) -> list[Sample]:
-    """Samples by stamp; of the same stamp the IMU first, which carries the state there."""
-    return sorted(samples, key=lambda sample: (sample.stamp, _ORDER[type(sample)]))
+class Reading(NamedTuple):
+    """One sample and the sensor that it comes from."""
+
+    stamp: int  # ns
+    rank: int  # place of the sensor among those of the vehicle
+    name: str  # of the sensor
+    sample: Any
 
 
-def check(sample: Sample) -> None:
-    """SignalError that names the value, if the sample has a wrong shape or is not finite."""
-    _CHECKS[type(sample)](sample)
+class Instruments:
+    """The sensors of a vehicle that the filter uses, in the order of its file: the IMU first.
+
+    Raises:
+        PluginError: no installed package brings the measurement of a sensor.
+    """
+
+    def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
+        types = sensor_types(vehicle)
+        self.unused = frozenset(each.name for each in types if not each.navigation)
+        self.measurements: dict[str, Measurement] = {}
+        for name in (each.name for each in types if each.navigation):
+            make = registry.load(registry.MEASUREMENTS, name)
+            self.measurements[name] = make(vehicle, vehicle.sensors.mounted[name], config)
+        self._ranks = {name: rank for rank, name in enumerate(self.measurements)}
+
+    def readings(self, groups: Mapping[str, Sequence[Any]]) -> list[Reading]:
+        """Samples by sensor as readings, in order.
+
+        Raises:
+            SignalError: the vehicle has no sensor of that name.
+        """
+        for name in groups:
+            if name not in self._ranks and name not in self.unused:
+                choices = ", ".join(self._ranks)
+                raise SignalError(f"samples of {name!r}: the vehicle has {choices}")
+        return in_order(
+            Reading(sample.stamp, rank, name, sample)
+            for name, rank in self._ranks.items()
+            for sample in groups.get(name, ())
+        )
 
 
-def _check_imu(sample: ImuSample) -> None:
-    checks.quaternion("imu.quaternion", sample.quaternion)
-    checks.array("imu.angular_velocity", sample.angular_velocity, (3,))
-    checks.array("imu.linear_acceleration", sample.linear_acceleration, (3,))
-
-
-def _check_dvl(sample: DvlSample) -> None:
-    checks.array("dvl.velocity", sample.velocity, (3,))
-
-
-def _check_pressure(sample: PressureSample) -> None:
-    checks.number("pressure.pressure", sample.pressure)
-
-
-def _check_gps(sample: GpsSample) -> None:
-    if not sample.fix:
-        return  # below the surface the position may be NaN
-    checks.number("gps.latitude_deg", sample.latitude_deg)
-    checks.number("gps.longitude_deg", sample.longitude_deg)
-    checks.number("gps.altitude", sample.altitude)
-
-
-_CHECKS: dict[type, Callable[[Any], None]] = {
-    ImuSample: _check_imu,
-    DvlSample: _check_dvl,
-    PressureSample: _check_pressure,
-    GpsSample: _check_gps,
-}
+def in_order(readings: Iterable[Reading]) -> list[Reading]:
+    """Readings by stamp; of the same stamp the IMU first, which carries the state there."""
+    return sorted(readings, key=lambda reading: reading[:2])

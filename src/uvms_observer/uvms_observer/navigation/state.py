@@ -1,15 +1,15 @@
-"""What the filter knows: the nominal state and the covariance of its error.
+"""The filter's state: the nominal state and the covariance of its error.
 
 The error state e (20,) is, with truth = estimate (+) error,
 
     e = (dp, dv, dtheta, db_g, db_a, db_c, ds, db_p):  R = Exp(dtheta) R_hat,  all else additive.
 
 dp, dv and dtheta are in the axes of map_ned. The point whose position and velocity are estimated is
-the IMU, where its accelerometers measure: so no angular acceleration is ever needed; the pose of
+the IMU, where its accelerometers measure, so that no angular acceleration is needed; the pose of
 the body origin follows from the mounting position.
 
-The last eight are errors of sensors that do not average out. Most of them cannot be told apart from
-the motion (a heading bias from a drift, say): they are there so that the covariance knows of them.
+The last eight are sensor errors that do not average out. Most of them cannot be distinguished from
+the motion (a heading bias from a drift, for example); as states they are part of the covariance.
 
 SIZE is compiled into the numba kernels of this package.
 """

@@ -1,35 +1,20 @@
 """Node `disturbance_observer`: what acts on the vehicle besides its thrusters, eq. (21)."""
 
-from uvms_core import topics
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import UvmsNode
-from uvms_core.tick_gate import Previous, Same, Tick
-from uvms_observer import DisturbanceObserver, ObserverConfig
+from uvms_core.ros.part_node import PartNode
+from uvms_observer import ObserverConfig
+from uvms_observer.parts import ObserverPart
 
 
-class DisturbanceObserverNode(UvmsNode):
+class DisturbanceObserverNode(PartNode):
     """odometry, joint_states and wrench_achieved in; disturbance and disturbance/budget out."""
 
+    role = "disturbance_observer"
     configurations = (ObserverConfig,)
 
-    def __init__(self, **options) -> None:
-        super().__init__("disturbance_observer", **options)
-        self._observer = DisturbanceObserver(self.vehicle, self.config(ObserverConfig))
-        inputs = {
-            topics.ODOMETRY: Same(),
-            topics.JOINT_STATES: Same(),
-            topics.WRENCH_ACHIEVED: Previous(self.period),
-        }
-        self.connect(inputs, topics.ODOMETRY, self._step)
-
-    def _step(self, tick: Tick) -> None:
-        budget, total = self._observer.step(
-            tick[topics.ODOMETRY.name],
-            tick[topics.JOINT_STATES.name],
-            tick[topics.WRENCH_ACHIEVED.name],
-        )
-        self.send(topics.DISTURBANCE, total)
-        self.send(topics.DISTURBANCE_BUDGET, budget)
+    def make_part(self) -> ObserverPart:
+        """The observer that the parameters name."""
+        return ObserverPart(self.vehicle, self.config(ObserverConfig), self.period)
 
 
 def main(args=None) -> int:

@@ -1,6 +1,5 @@
 """Node `motion_planner`: plans vehicle and joints every step; serves the two path actions."""
 
-import time
 from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -12,48 +11,47 @@ from uvms_core.errors import UvmsError
 from uvms_core.messages import from_message
 from uvms_core.ros.convert import action_class
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import UvmsNode
-from uvms_core.signals import NANOSECONDS, to_nanoseconds
-from uvms_core.tick_gate import Same, Tick
+from uvms_core.ros.part_node import PartNode
+from uvms_core.signals import NANOSECONDS
+from uvms_core.tick_gate import Tick
 from uvms_core.topics import Action
-from uvms_planner import MotionPlanner, PlannerConfig, PlannerStep
+from uvms_planner import PlannerConfig, PlannerStep
+from uvms_planner.part import PlannerPart
 
 
-class MotionPlannerNode(UvmsNode):
+class MotionPlannerNode(PartNode):
     """odometry and joint_states in, reference out, every planner step.
 
     Actions: `follow_end_effector_path` and `follow_joint_trajectory`, one goal at a time. A goal
     that cannot be followed is rejected; the reason is logged and stands on /diagnostics.
     """
 
+    role = "motion_planner"
     configurations = (PlannerConfig,)
+    part: PlannerPart
 
-    def __init__(self, **options) -> None:
-        super().__init__("motion_planner", **options)
-        config = self.config(PlannerConfig)
-        self._planner = MotionPlanner(self.vehicle, config, self.seed)
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
         self._handle: ServerGoalHandle | None = None
         self._outcome: Any = None
         self._type: Any = None
         self._stamp = 0
         self._servers = [self._serve(action) for action in topics.ACTIONS]
-        inputs = {topics.ODOMETRY: Same(), topics.JOINT_STATES: Same()}
-        step = to_nanoseconds(config.step_s)
-        self.connect(inputs, topics.ODOMETRY, self._step, in_loop=False, every=step)
 
-    def _step(self, tick: Tick) -> None:
-        began = time.perf_counter()
-        plan = self._planner.step(
-            tick.stamp, tick[topics.ODOMETRY.name], tick[topics.JOINT_STATES.name]
-        )
-        elapsed_ms = 1e3 * (time.perf_counter() - began)
-        for reference in plan.references:
-            self.send(topics.REFERENCE, reference)
-        self._stamp = tick.stamp
-        self._tell(plan)
-        self.report(tick.stamp, step_ms=elapsed_ms, **plan.diagnostics())
+    def make_part(self) -> PlannerPart:
+        """The planner with the method that the parameters name."""
+        return PlannerPart(self.vehicle, self.config(PlannerConfig), self.seed)
 
-    def _tell(self, plan: PlannerStep) -> None:
+    def take_tick(self, tick: Tick) -> None:
+        """Plan; every planner step is reported, and the goal's client hears of it."""
+        super().take_tick(tick)
+        self._stamp, plan = tick.stamp, self.part.plan
+        if plan is None:
+            return
+        self._answer_goal(plan)
+        self.report(tick.stamp, step_ms=self.step_ms, **plan.diagnostics())
+
+    def _answer_goal(self, plan: PlannerStep) -> None:
         if self._handle is None:
             return
         if plan.feedback is not None:
@@ -75,7 +73,7 @@ class MotionPlannerNode(UvmsNode):
 
     def _admit_goal(self, action: Action, goal: Any) -> GoalResponse:
         try:
-            self._planner.accept(from_message(action, goal, self.vehicle.joint_names))
+            self.part.planner.accept(from_message(action, goal, self.vehicle.joint_names))
         except UvmsError as fault:
             self.get_logger().error(f"goal rejected: {fault}")
             self.report(self._stamp, diagnostics.ERROR, str(fault))
@@ -87,7 +85,7 @@ class MotionPlannerNode(UvmsNode):
         handle.execute()
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
-        self._planner.cancel()
+        self.part.planner.cancel()
         return CancelResponse.ACCEPT
 
     async def _execute(self, handle: ServerGoalHandle) -> Any:

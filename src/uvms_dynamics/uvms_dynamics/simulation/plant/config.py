@@ -3,24 +3,20 @@
 import numpy as np
 from pydantic import Field
 
-from uvms_core.config import Config
 from uvms_core.errors import ConfigError
 from uvms_core.signals import Array, to_nanoseconds
+from uvms_core.start import StartConfig
+from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 
 
-class PlantConfig(Config):
+class PlantConfig(StartConfig):
     """Integration step, control period, start and current."""
 
     step_s: float = Field(0.005, gt=0.0, le=0.05, description="Runge-Kutta step, s")
-    control_period_s: float = Field(
-        0.05, gt=0.0, le=1.0, description="time between commands, a multiple of step_s, s"
-    )
-    initial_position_m: tuple[float, float, float] = Field(
-        (0.0, 0.0, 10.0), description="of the body origin in map_ned, m"
-    )
+    control_period_s: ControlPeriod = CONTROL_PERIOD_S
     initial_rpy_deg: tuple[float, float, float] = Field(
         (0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees"
     )

@@ -6,13 +6,13 @@ from typing import NamedTuple
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_dynamics.kernels import inverse_dynamics
 from uvms_dynamics.model import thruster_matrix
 from uvms_dynamics.model.vehicle_table import Model
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state
-from uvms_dynamics.simulation.plant.stiffest_poses import joint_limits, stiffest_poses, stop_depths
+from uvms_dynamics.simulation.plant.stiffest_poses import stiffest_poses, stop_depths
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 _LINEAR = 3  # so many of them are translations

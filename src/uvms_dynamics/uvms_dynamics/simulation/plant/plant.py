@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_core.errors import SignalError
+from uvms_core import checks
 from uvms_core.signals import (
     Array,
     JointCommand,
@@ -36,8 +36,8 @@ from uvms_dynamics.simulation.thrusters import build_thrusters
 class Plant:
     """One augmented system of 6 + n degrees of freedom, its thrusters and its sensors.
 
-    `sense()` and `truth()` tell of the present stamp, `step(...)` goes one control period on.
-    Raises ConfigError where periods are no multiples of the step or the step is unstable.
+    `sense()` and `truth()` are of the present stamp; `step(...)` goes one control period on.
+    Raises ConfigError where periods are not multiples of the step or the step is unstable.
     """
 
     def __init__(self, vehicle: Vehicle, config: PlantConfig, seed: int) -> None:
@@ -93,12 +93,12 @@ class Plant:
         Raises SignalError for a command of wrong size or that is not finite (the plant then stays
         where it is), PlantDiverged where the state leaves the finite numbers.
         """
-        thrust = _checked(thruster.thrust, self._vehicle.thruster_names, "thruster_command", "N")
-        effort = _checked(joints.effort, self._vehicle.joint_names, "joint_command", "N m")
+        checks.check("thruster_command", thruster, m=self._vehicle.thruster_names)
+        checks.check("joint_command", joints, n=self._vehicle.joint_names)
         limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
-        self._effort = np.clip(effort, -limit, limit)
+        self._effort = np.clip(joints.effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
-        self._integrate(thrust, self._states, self._rates)
+        self._integrate(np.ascontiguousarray(thruster.thrust), self._states, self._rates)
         stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
         self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
 
@@ -119,20 +119,3 @@ class Plant:
         trajectory = Trajectory(stamps, states, rates, self._system.current)
         joints = true_joints(self._stamp, self._state, self._effort)
         return self._sensors.sample(trajectory, joints.position, joints.velocity, joints.effort)
-
-
-def _checked(values: Array, names: tuple[str, ...], topic: str, unit: str) -> Array:
-    """The command as an array, or SignalError."""
-    array = np.array(values, dtype=float)
-    if array.shape != (len(names),):
-        raise SignalError(
-            f"{topic}: has shape {array.shape}, needs ({len(names)},) for {', '.join(names)}"
-        )
-    if not np.isfinite(array).all():
-        bad = ", ".join(
-            f"{name} = {value} {unit}"
-            for name, value in zip(names, array, strict=True)
-            if not np.isfinite(value)
-        )
-        raise SignalError(f"{topic}: every value must be finite; got {bad}")
-    return array

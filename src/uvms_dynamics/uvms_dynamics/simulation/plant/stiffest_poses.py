@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_dynamics.kernels import mass_matrix
 from uvms_dynamics.model.vehicle_table import Model
 
@@ -89,13 +89,6 @@ def _one(vehicle: Vehicle, poses: Array, mobility: Array, slope: Array) -> Array
     q = np.clip(poses[k], lower + margin, upper - margin)
     q[i] = upper[i] if poses[k, i] > 0.5 * (lower[i] + upper[i]) else lower[i]
     return q
-
-
-def joint_limits(vehicle: Vehicle) -> tuple[Array, Array]:
-    """Lower and upper limits (n,) of the joints, rad."""
-    joints = vehicle.arm.joints
-    lower = np.radians([joint.lower_deg for joint in joints])
-    return lower, np.radians([joint.upper_deg for joint in joints])
 
 
 def stop_depths(vehicle: Vehicle) -> Array:

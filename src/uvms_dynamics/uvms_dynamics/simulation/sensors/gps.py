@@ -5,29 +5,30 @@ import math
 import numpy as np
 
 from uvms_core.geodesy import ned_to_geodetic
-from uvms_core.rng import generator
+from uvms_core.sensors import gps
 from uvms_core.signals import GpsSample
-from uvms_core.vehicle import Environment
+from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Gps
 from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import QUATERNION, VELOCITY, Trajectory
 
 
-class GpsSensor:
-    """Latitude, longitude and altitude of the antenna; no fix while it is under water."""
+class GpsSensor(SensorModel):
+    """Latitude, longitude and altitude of the antenna; no fix under water."""
 
-    def __init__(self, gps: Gps, environment: Environment, period: int, seed: int) -> None:
-        self.period = period
-        self._lever = np.array(gps.position_m)
-        self._datum = (environment.datum_latitude_deg, environment.datum_longitude_deg)
-        self._noise = np.array(
-            [gps.horizontal_noise_m, gps.horizontal_noise_m, gps.vertical_noise_m]
-        )
+    type = gps.TYPE
+
+    def __init__(self, vehicle: Vehicle, section: Gps, period: int, seed: int) -> None:
+        super().__init__(vehicle, section, period, seed)
+        sea, horizontal = vehicle.environment, section.horizontal_noise_m
+        self._lever = np.array(section.position_m)
+        self._datum = (sea.datum_latitude_deg, sea.datum_longitude_deg)
+        self._noise = np.array([horizontal, horizontal, section.vertical_noise_m])
         self._covariance = np.diag(self._noise**2)
-        self._rng = generator(seed, "sensors/gps")
 
     def sample(self, trajectory: Trajectory) -> tuple[GpsSample, ...]:
-        """Samples that fall due on the trajectory."""
+        """Samples that are due on the trajectory."""
         return tuple(self._read(trajectory, row) for row in trajectory.due(self.period))
 
     def _read(self, trajectory: Trajectory, row: int) -> GpsSample:
@@ -35,5 +36,5 @@ class GpsSensor:
         place = state[:3] + quat_to_matrix(state[QUATERNION:VELOCITY]) @ self._lever
         if place[2] >= 0.0:
             return GpsSample(stamp, False, math.nan, math.nan, math.nan, self._covariance)
-        measured = place + self._noise * self._rng.standard_normal(3)
+        measured = place + self._noise * self.rng.standard_normal(3)
         return GpsSample(stamp, True, *ned_to_geodetic(measured, *self._datum), self._covariance)

@@ -1,4 +1,4 @@
-"""What a sensor at a lever arm goes through while the body moves."""
+"""True motion of the vehicle and of a sensor at a lever arm."""
 
 from dataclasses import dataclass
 

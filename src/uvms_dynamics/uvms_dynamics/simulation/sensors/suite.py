@@ -1,8 +1,11 @@
 """All sensors of the vehicle, each with its own generator of random numbers."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
+from uvms_core import registry
+from uvms_core.sensors import INERTIAL, sensor_types
 from uvms_core.signals import (
     Array,
     DvlSample,
@@ -12,50 +15,71 @@ from uvms_core.signals import (
     PressureSample,
     to_nanoseconds,
 )
+from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics.simulation.sensors.dvl import DvlSensor
 from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
-from uvms_dynamics.simulation.sensors.gps import GpsSensor
-from uvms_dynamics.simulation.sensors.imu import ImuSensor
+from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
-from uvms_dynamics.simulation.sensors.pressure import PressureSensor
 
 
 @dataclass(frozen=True)
 class SensorFrame:
-    """All samples since the last control tick, this one's included."""
+    """All samples since the last control tick, this one's included: by sensor, and the joints."""
 
-    imu: tuple[ImuSample, ...]
-    dvl: tuple[DvlSample, ...]
-    pressure: tuple[PressureSample, ...]
-    gps: tuple[GpsSample, ...]
+    samples: Mapping[str, tuple[Any, ...]]
     joints: JointStates
+
+    @property
+    def imu(self) -> tuple[ImuSample, ...]:
+        """Of the gyrocompass and inertial unit."""
+        return self.samples["imu"]
+
+    @property
+    def dvl(self) -> tuple[DvlSample, ...]:
+        """Of the Doppler velocity log."""
+        return self.samples["dvl"]
+
+    @property
+    def pressure(self) -> tuple[PressureSample, ...]:
+        """Of the pressure sensor."""
+        return self.samples["pressure"]
+
+    @property
+    def gps(self) -> tuple[GpsSample, ...]:
+        """Of the satellite receiver."""
+        return self.samples["gps"]
 
 
 class SensorSuite:
-    """IMU, DVL, pressure, GPS and encoders, each at its own rate, due at multiples of its period.
+    """The sensors of the vehicle file, each at its own rate, due at multiples of its period.
 
-    `check(period, name)` is called with each period in ns and may refuse it.
+    Args:
+        vehicle: its sensors' models are found by name in `uvms.sensors`.
+        seed: of the run.
+        check: called with each period in ns and the name of its field; may refuse it.
+
+    Raises:
+        PluginError: a sensor of the file has no model.
     """
 
     def __init__(self, vehicle: Vehicle, seed: int, check: Callable[[int, str], object]) -> None:
-        sensors, environment = vehicle.sensors, vehicle.environment
-        periods = {}
-        for name in ("imu", "dvl", "pressure", "gps"):
-            periods[name] = to_nanoseconds(1.0 / getattr(sensors, name).rate_hz)
-            check(periods[name], f"sensors.{name}.rate_hz")
-        self._imu = ImuSensor(sensors.imu, environment.gravity_m_s2, periods["imu"], seed)
-        self._dvl = DvlSensor(sensors.dvl, periods["dvl"], seed)
-        self._pressure = PressureSensor(sensors.pressure, environment, periods["pressure"], seed)
-        self._gps = GpsSensor(sensors.gps, environment, periods["gps"], seed)
-        self._encoders = EncoderSensor(sensors.encoders, seed)
+        self._models: dict[str, SensorModel] = {}
+        for name, section in vehicle.sensors.mounted.items():
+            period = to_nanoseconds(1.0 / section.rate_hz)
+            check(period, f"sensors.{name}.rate_hz")
+            make = registry.load(registry.SENSORS, name)
+            self._models[name] = make(vehicle, section, period, seed)
+        self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on the trajectory, and the encoders at its end."""
         return SensorFrame(
-            self._imu.sample(trajectory),
-            self._dvl.sample(trajectory),
-            self._pressure.sample(trajectory),
-            self._gps.sample(trajectory),
+            {name: model.sample(trajectory) for name, model in self._models.items()},
             self._encoders.sample(trajectory.stamps[-1], q, q_dot, effort),
         )
+
+
+def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
+    """Name and topic of each sensor; the inertial one comes last, since it starts the next tick."""
+    types = sorted(sensor_types(vehicle), key=lambda sensor: sensor is INERTIAL)
+    return tuple((sensor.name, sensor.topic) for sensor in types)

@@ -1,0 +1,136 @@
+"""A vehicle in one posture as shapes for the ray caster."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uvms_analysis.report.raycast import Shape
+from uvms_core.description.solids import (
+    THRUSTER_LENGTH_M,
+    THRUSTER_RADIUS_M,
+    Solid,
+    hull_solids,
+    link_solids,
+)
+from uvms_core.description.tree import basis
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.frames import Pose, arm_frames, compose, joint_frames
+from uvms_core.vehicle.hull import Hull
+
+Colour = tuple[float, float, float]
+
+HULL: Colour = (0.96, 0.74, 0.16)
+LINKS: tuple[Colour, Colour] = ((0.90, 0.42, 0.16), (0.66, 0.69, 0.73))
+JOINT: Colour = (0.24, 0.26, 0.30)
+THRUSTER: Colour = (0.22, 0.24, 0.28)
+MOUTH_M = 0.006
+"""How far the mouth of a tunnel thruster stands out of the hull."""
+JOINT_RADIUS = 1.12
+"""Of a joint's ball, in radii of the link that it turns."""
+
+
+@dataclass(frozen=True)
+class Posture:
+    """Pose of the body in `map_ned` and joint angles, at a time of the run."""
+
+    time: float  # s
+    pose: Pose
+    q: Array  # (n,) rad
+
+
+def rod(start: Array, end: Array, radius: float, colour: Colour, kind: str = "cylinder") -> Shape:
+    """A cylinder, or a cone with its tip at the end, between two points."""
+    span = end - start
+    length = float(np.linalg.norm(span))
+    turn = basis(span / length, 2)
+    return Shape(kind, (start + end) / 2, turn * [radius, radius, length / 2], colour)
+
+
+def ball(centre: Array, radius: float, colour: Colour) -> Shape:
+    """A sphere."""
+    return Shape("sphere", centre, radius * np.eye(3), colour)
+
+
+def arrow(start: Array, span: Array, radius: float, colour: Colour) -> list[Shape]:
+    """An arrow from a point along a vector, its head four radii long."""
+    length = float(np.linalg.norm(span))
+    neck = start + span * max(0.0, 1.0 - 6.0 * radius / length)
+    return [
+        rod(start, neck, radius, colour),
+        rod(neck, start + span, 2.5 * radius, colour, "cone"),
+    ]
+
+
+def body_shapes(vehicle: Vehicle, posture: Posture) -> list[Shape]:
+    """Hull, thrusters and arm in `map_ned`."""
+    shapes = [_hull(vehicle, posture.pose), *_thrusters(vehicle, posture.pose)]
+    frames = arm_frames(vehicle.arm, posture.q)[1:]
+    joints = joint_frames(vehicle.arm, posture.q)
+    for number, (link, frame, joint) in enumerate(
+        zip(vehicle.arm.links, frames, joints, strict=True)
+    ):
+        solids = link_solids(link)
+        placed = compose(posture.pose, frame)
+        shapes += [_solid(solid, placed, LINKS[number % 2]) for solid in solids]
+        centre = compose(posture.pose, joint)[0]
+        shapes.append(ball(centre, JOINT_RADIUS * min(s.radius for s in solids), JOINT))
+    return shapes
+
+
+def _hull(vehicle: Vehicle, pose: Pose) -> Shape:
+    """The spheroid itself; without one, the sphere of the hull's volume, as in the URDF."""
+    centre = pose[0] + pose[1] @ _centre(vehicle.hull)
+    return Shape("sphere", centre, pose[1] * _half_axes(vehicle.hull), HULL)
+
+
+def _thrusters(vehicle: Vehicle, pose: Pose) -> list[Shape]:
+    """Each as a cylinder along its thrust, through the hull where it lies inside (a tunnel)."""
+    shapes = []
+    for thruster in vehicle.thrusters:
+        along = np.array(thruster.direction)
+        first, last = tunnel(vehicle, np.array(thruster.position_m), along)
+        ends = [pose[0] + pose[1] @ (np.array(thruster.position_m) + s * along)
+                for s in (first, last)]  # fmt: skip
+        shapes.append(rod(ends[0], ends[1], THRUSTER_RADIUS_M, THRUSTER))
+    return shapes
+
+
+def tunnel(vehicle: Vehicle, position: Array, along: Array) -> tuple[float, float]:
+    """Where the thruster's cylinder begins and ends along its axis, m from its position."""
+    half = 0.5 * THRUSTER_LENGTH_M
+    through = chord(vehicle.hull, position, along)
+    form = vehicle.hull.spheroid
+    if through is None or form is None or np.ptp(through) > 1.01 * form.diameter_m:
+        return -half, half  # outside, or along the hull
+    return min(through[0] - MOUTH_M, -half), max(through[1] + MOUTH_M, half)
+
+
+def chord(hull: Hull, position: Array, along: Array) -> tuple[float, float] | None:
+    """Where a line through a point enters and leaves the hull, m along a unit vector."""
+    scale, centre = 1.0 / _half_axes(hull), _centre(hull)
+    o, d = (position - centre) * scale, along * scale
+    under = (o @ d) ** 2 - (d @ d) * (o @ o - 1.0)
+    if under <= 0.0:
+        return None
+    root = float(np.sqrt(under))
+    return float((-(o @ d) - root) / (d @ d)), float((-(o @ d) + root) / (d @ d))
+
+
+def _half_axes(hull: Hull) -> Array:
+    """Half axes (3,) of the spheroid, or of the sphere of the hull's volume."""
+    if hull.spheroid is None:
+        return np.full(3, hull_solids(hull)[0].radius)
+    length, diameter = hull.spheroid.length_m, hull.spheroid.diameter_m
+    return 0.5 * np.array([length, diameter, diameter])
+
+
+def _centre(hull: Hull) -> Array:
+    return np.zeros(3) if hull.spheroid is not None else np.array(hull.cb_m)
+
+
+def _solid(solid: Solid, frame: Pose, colour: Colour) -> Shape:
+    centre, turn = compose(frame, solid.pose)
+    if solid.length == 0.0:
+        return ball(centre, solid.radius, colour)
+    return Shape("cylinder", centre, turn * [solid.radius, solid.radius, solid.length / 2], colour)

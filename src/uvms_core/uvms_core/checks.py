@@ -1,0 +1,179 @@
+"""Checks of signals: each is checked once, where it enters, and trusted after that.
+
+A signal made from a message is checked on the way (`uvms_core.messages.fields`); one made in Python
+by the first part that is given it (`check`). Both leave a mark on the signal, so that the next part
+does not check it again: it looks only at stamps, and at sizes against its own vehicle.
+`dataclasses.replace` makes a new signal without the mark.
+"""
+
+from collections.abc import Mapping, Sequence
+from functools import cache
+from math import isfinite
+from typing import Any, TypeVar, get_type_hints
+
+import numpy as np
+
+from uvms_core.errors import SignalError
+from uvms_core.signals import Array, OnlyIf, Shape, to_nanoseconds
+
+QUATERNION_TOLERANCE = 1e-3
+"""A quaternion from outside may be off unit length by this much; a zero one is rubbish."""
+MAX_AGE_S = 0.5
+"""Oldest joint state or disturbance that control works with, s: a planner step."""
+
+_MARK = "_checked"
+S = TypeVar("S")
+Names = Mapping[str, Sequence[str]]
+
+
+def trust(signal: S) -> S:
+    """The signal, marked as checked; for those who have checked what it is made of."""
+    marks = getattr(signal, "__dict__", None)
+    if marks is not None:
+        marks[_MARK] = True
+    return signal
+
+
+def check(name: str, signal: Any, **names: Sequence[str]) -> None:
+    """Check a signal by the annotations of its fields, unless that has been done; mark it.
+
+    Args:
+        name: of the signal, for errors.
+        signal: dataclass with annotations of `uvms_core.signals`.
+        names: by letter of a dimension, the names that the entries belong to:
+            `n=vehicle.joint_names`. Sizes are compared in any case.
+
+    Raises:
+        SignalError: a field has a wrong type or shape, is not finite or not of unit length.
+    """
+    kind: Any = type(signal)
+    fields, sized = _fields(kind)
+    if _MARK not in getattr(signal, "__dict__", ()):
+        sizes = {letter: len(each) for letter, each in names.items()}
+        for field, rule in fields:
+            _check_field(f"{name}.{field}", getattr(signal, field), rule, sizes, names, signal)
+        trust(signal)
+    elif names:
+        for field, rule in sized:
+            _check_sizes(f"{name}.{field}", getattr(signal, field), rule, names)
+
+
+def number(name: str, value: float) -> None:
+    """SignalError unless the value is finite."""
+    if not isfinite(value):
+        raise SignalError(f"{name} is {value}; it must be finite")
+
+
+def is_unit(squared: float) -> bool:
+    """Whether a quaternion whose components' squares add up to this has unit length."""
+    return abs(squared - 1.0) < 2.0 * QUATERNION_TOLERANCE
+
+
+def later(name: str, stamp: int, than: int, of: str) -> None:
+    """SignalError unless the stamp comes after another; both in ns."""
+    if stamp <= than:
+        raise SignalError(f"{name} is {stamp} ns; it must be after {of}, {than} ns")
+
+
+def age(name: str, stamp: int, now: int, limit_s: float = MAX_AGE_S) -> None:
+    """Check that an input of `stamp` can be used at `now` (both ns).
+
+    Raises:
+        SignalError: it is later than now, or older than `limit_s`.
+    """
+    if not 0 <= now - stamp <= to_nanoseconds(limit_s):
+        raise SignalError(
+            f"{name}: stamp {stamp} ns; it must lie within {limit_s:g} s before the odometry's,"
+            f" {now} ns"
+        )
+
+
+@cache
+def _fields(kind: type) -> tuple[tuple[tuple[str, Any], ...], tuple[tuple[str, Shape], ...]]:
+    """Fields of a signal with their rules: all that have one, and those of a vehicle's size."""
+    found = []
+    for field, hint in get_type_hints(kind, include_extras=True).items():
+        rules = [each for each in getattr(hint, "__metadata__", ()) if _is_rule(each)]
+        if rules or hint is float:
+            found.append((field, rules[0] if rules else None))
+    sized = [
+        (field, rule)
+        for field, rule in found
+        if isinstance(rule, Shape) and any(isinstance(size, str) for size in rule.sizes)
+    ]
+    return tuple(found), tuple(sized)
+
+
+def _is_rule(item: Any) -> bool:
+    return isinstance(item, Shape | OnlyIf)
+
+
+def _check_field(
+    name: str, value: Any, rule: Any, sizes: dict[str, int], names: Names, signal: Any
+) -> None:
+    if isinstance(rule, Shape):
+        _check_array(name, value, rule, sizes, names)
+    elif rule is None or getattr(signal, rule.field):
+        number(name, value)
+
+
+def _check_array(name: str, value: Any, rule: Shape, sizes: dict[str, int], names: Names) -> None:
+    if not isinstance(value, np.ndarray) or value.dtype != np.float64:
+        kind = value.dtype if isinstance(value, np.ndarray) else type(value).__name__
+        raise SignalError(f"{name} has type {kind}; it must be an array of float64")
+    if value.shape != rule.sizes and not _fits(value.shape, rule, sizes):
+        raise _wrong_shape(name, value, rule, sizes, names)
+    flat = value.ravel()
+    squared = flat.dot(flat)
+    if not isfinite(squared):  # one fast test; the slow way only names the value
+        _name_infinite(name, value, rule, names)
+    if rule.unit:
+        _check_unit(name, value, squared)
+    if rule.increasing and (value[0] != 0.0 or (np.diff(value) <= 0.0).any()):
+        raise SignalError(f"{name} is {value}; it must increase from 0")
+
+
+def _fits(shape: tuple[int, ...], rule: Shape, sizes: dict[str, int]) -> bool:
+    """Whether a shape is as the rule says; a letter takes the size that it has at first, not 0."""
+    return len(shape) == len(rule.sizes) and all(
+        (count > 0 and sizes.setdefault(size, count) == count)
+        if isinstance(size, str)
+        else size == count
+        for size, count in zip(rule.sizes, shape, strict=True)
+    )
+
+
+def _check_sizes(name: str, value: Array, rule: Shape, names: Names) -> None:
+    sizes = {letter: len(each) for letter, each in names.items()}
+    if not _fits(value.shape, rule, sizes):
+        raise _wrong_shape(name, value, rule, sizes, names)
+
+
+def _wrong_shape(
+    name: str, value: Array, rule: Shape, sizes: dict[str, int], names: Names
+) -> SignalError:
+    wanted = [str(sizes.get(str(size), size)) for size in rule.sizes]
+    shape = f"({', '.join(wanted)}{',' if len(wanted) == 1 else ''})"
+    whose = "".join(f" for {', '.join(names[str(s)])}" for s in rule.sizes if s in names)
+    free = [size for size in rule.sizes if isinstance(size, str) and size not in sizes]
+    least = "".join(f", {size} >= 1" for size in free)
+    return SignalError(f"{name} has shape {value.shape}; it must have {shape}{least}{whose}")
+
+
+def _check_unit(name: str, value: Array, squared: float) -> None:
+    if value.ndim == 1:
+        if not is_unit(squared):
+            raise SignalError(f"{name} has length {squared**0.5:g}; it must be 1")
+        return
+    for row, length in enumerate(np.einsum("ij,ij->i", value, value)):
+        if not is_unit(length):
+            raise SignalError(f"{name}[{row}] has length {length**0.5:g}; it must be 1")
+
+
+def _name_infinite(name: str, value: Array, rule: Shape, names: Names) -> None:
+    for where in np.argwhere(~np.isfinite(value)):
+        index = ", ".join(
+            names[str(size)][i] if size in names else str(int(i))
+            for size, i in zip(rule.sizes, where, strict=True)
+        )
+        raise SignalError(f"{name}[{index}] is {value[tuple(where)]}; it must be finite")

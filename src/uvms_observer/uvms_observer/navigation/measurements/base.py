@@ -1,0 +1,54 @@
+"""What the navigation filter asks of a measurement."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from typing import Any, ClassVar
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_observer.navigation.config import NavigationConfig
+from uvms_observer.navigation.state import NavigationState
+
+
+class Measurement(ABC):
+    """How the filter uses one sensor; found by the sensor's name in `uvms.measurements`.
+
+    A subclass gives `size`, and extends `__init__` with what it takes from the vehicle file. It
+    keeps no state: the filter goes back in time for samples that come late.
+
+    Args:
+        vehicle: whose sensor it is.
+        section: the sensor's own section of the vehicle file.
+        config: of the filter; its floors on the noise.
+    """
+
+    size: ClassVar[int]
+    """Dimension of the measurement."""
+
+    def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
+        imu = vehicle.sensors.imu
+        self.lever: Array = np.subtract(section.position_m, imu.position_m)
+        """Sensor from the IMU, (3,) m, body axes."""
+        self.initial_variance: Mapping[int, float] = {}
+        """Variance of the error states of this sensor at the start, by index in the state."""
+
+    def usable(self, sample: Any) -> bool:
+        """Whether the sample says anything; a GPS under water does not."""
+        return True
+
+    @abstractmethod
+    def correct(self, state: NavigationState, sample: Any, rate: Array, gate: float) -> float:
+        """Correct the state in place, unless the residual is beyond the gate.
+
+        Args:
+            state: at the sample's stamp; that of the IMU, as `NavigationState` says.
+            sample: checked.
+            rate: last reading of the gyro, (3,) rad/s.
+            gate: largest squared Mahalanobis distance of the residual that is accepted.
+
+        Returns:
+            That distance; above `gate` nothing was changed. `uvms_observer.navigation.correct`
+            does all this for an expected reading, its derivative and its noise.
+        """

@@ -1,0 +1,73 @@
+"""The Doppler velocity log: velocity of its transducer over ground."""
+
+import numpy as np
+
+from uvms_core.signals import Array, DvlSample
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Dvl
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
+from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
+from uvms_observer.navigation.config import NavigationConfig
+from uvms_observer.navigation.correction import correct
+from uvms_observer.navigation.installation import rate_variance
+from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.state import DVL_SCALE, SIZE, NavigationState
+
+
+class DvlVelocity(Measurement):
+    """(1 + s) (R^T v + w x d) + n, with the scale error s in the state."""
+
+    size = 3
+
+    def __init__(self, vehicle: Vehicle, section: Dvl, config: NavigationConfig) -> None:
+        super().__init__(vehicle, section, config)
+        self._variance = max(section.noise_m_s, config.noise_floor.velocity_m_s) ** 2
+        self._rate_variance = rate_variance(vehicle)
+        self.initial_variance = {DVL_SCALE: float(np.square(section.scale_error))}
+
+    def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
+        """As `Measurement.correct`."""
+        return correct_velocity(
+            state, sample.velocity, self._variance, self.lever, rate, self._rate_variance, gate
+        )
+
+
+@exact_inner
+def velocity(state: NavigationState, lever: Array, rate: Array) -> tuple[Array, Array]:
+    """Velocity that the DVL should read (3,) m/s, body axes, and H."""
+    R = quat_to_matrix(state.quaternion)
+    arm, turned = skew(lever), R.T @ skew(state.velocity)
+    reading, swing = R.T @ state.velocity, arm @ body_rate(state, rate)
+    scale = 1.0 + state.instrument_bias[0]
+    H = np.zeros((3, SIZE))
+    for i in range(3):
+        motion = reading[i] - swing[i]
+        for k in range(3):
+            H[i, 3 + k] = scale * R[k, i]
+            H[i, 6 + k] = scale * turned[i, k]
+            H[i, 9 + k] = scale * arm[i, k]
+        H[i, 18] = motion
+        reading[i] = scale * motion
+    return reading, H
+
+
+@exact_kernel
+def correct_velocity(
+    state: NavigationState,
+    measured: Array,
+    variance: float,
+    lever: Array,
+    rate: Array,
+    rate_variance: float,
+    gate: float,
+) -> float:
+    """DVL: velocity (3,) m/s in body axes; the gyro's noise enters by the lever arm."""
+    residual, H = velocity(state, lever, rate)
+    subtract_from(measured, residual)
+    arm = skew(lever)
+    N = arm @ transposed(arm)
+    for i in range(3):
+        for k in range(3):
+            N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
+    return correct(state, H, residual, N, gate)

@@ -1,0 +1,36 @@
+"""The satellite receiver: position of its antenna, while that is above the water."""
+
+import numpy as np
+
+from uvms_core.geodesy import geodetic_to_ned
+from uvms_core.signals import Array, GpsSample
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Gps
+from uvms_observer.navigation.config import NavigationConfig
+from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.position import correct_position
+from uvms_observer.navigation.state import NavigationState
+
+
+class GpsPosition(Measurement):
+    """p + R d + n, in the map whose datum the vehicle file gives."""
+
+    size = 3
+
+    def __init__(self, vehicle: Vehicle, section: Gps, config: NavigationConfig) -> None:
+        super().__init__(vehicle, section, config)
+        sea, floor = vehicle.environment, config.noise_floor.position_m
+        horizontal = max(section.horizontal_noise_m, floor)
+        vertical = max(section.vertical_noise_m, floor)
+        self._variance = np.array([horizontal, horizontal, vertical]) ** 2
+        self._datum = (sea.datum_latitude_deg, sea.datum_longitude_deg)
+
+    def usable(self, sample: GpsSample) -> bool:
+        """Whether the receiver has a fix."""
+        return sample.fix
+
+    def correct(self, state: NavigationState, sample: GpsSample, rate: Array, gate: float) -> float:
+        """As `Measurement.correct`."""
+        place = (sample.latitude_deg, sample.longitude_deg, sample.altitude)
+        antenna = geodetic_to_ned(*place, *self._datum)
+        return correct_position(state, antenna, self._variance, self.lever, gate)

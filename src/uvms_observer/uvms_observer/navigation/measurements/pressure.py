@@ -1,0 +1,60 @@
+"""The pressure sensor: its depth."""
+
+import numpy as np
+
+from uvms_core.signals import Array, PressureSample
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Pressure
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_observer.navigation.config import NavigationConfig
+from uvms_observer.navigation.correction import correct
+from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.state import DEPTH_BIAS, SIZE, NavigationState
+
+
+class PressureDepth(Measurement):
+    """(p + R d)_z + b_p + n, with the bias b_p in the state; pressure grows by rho g with depth."""
+
+    size = 1
+
+    def __init__(self, vehicle: Vehicle, section: Pressure, config: NavigationConfig) -> None:
+        super().__init__(vehicle, section, config)
+        sea = vehicle.environment
+        self._surface = sea.atmospheric_pressure_pa
+        self._gradient = sea.water_density_kg_m3 * sea.gravity_m_s2
+        self._variance = max(section.noise_pa / self._gradient, config.noise_floor.depth_m) ** 2
+        self.initial_variance = {DEPTH_BIAS: float(np.square(section.bias_pa / self._gradient))}
+
+    def correct(
+        self, state: NavigationState, sample: PressureSample, rate: Array, gate: float
+    ) -> float:
+        """As `Measurement.correct`."""
+        measured = (sample.pressure - self._surface) / self._gradient
+        return correct_depth(state, measured, self._variance, self.lever, gate)
+
+
+@exact_inner
+def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
+    """Depth that the pressure should show (1,) m, and H."""
+    offset = quat_to_matrix(state.quaternion) @ lever
+    H = np.zeros((1, SIZE))
+    H[0, 2] = 1.0
+    H[0, 6] = offset[1]
+    H[0, 7] = -offset[0]
+    H[0, 19] = 1.0
+    reading = np.empty(1)
+    reading[0] = state.position[2] + offset[2] + state.instrument_bias[1]
+    return reading, H
+
+
+@exact_kernel
+def correct_depth(
+    state: NavigationState, measured: float, variance: float, lever: Array, gate: float
+) -> float:
+    """Pressure sensor: its depth in m."""
+    residual, H = depth(state, lever)
+    residual[0] = measured - residual[0]
+    N = np.empty((1, 1))
+    N[0, 0] = variance
+    return correct(state, H, residual, N, gate)

@@ -1,0 +1,118 @@
+"""The filter's equations with full matrices in plain numpy, to compare its kernels with.
+
+Slow and plain: every function returns new values and reads like the formulas in docs/navigation.md.
+"""
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.rotations import (
+    quat_multiply,
+    quat_to_matrix,
+    rotation_vector_to_quat,
+    skew,
+)
+from uvms_observer.navigation.propagation import ProcessNoise
+from uvms_observer.navigation.state import (
+    ACCELEROMETER_BIAS,
+    ATTITUDE,
+    COMPASS_BIAS,
+    GYRO_BIAS,
+    POSITION,
+    SIZE,
+    VELOCITY,
+    NavigationState,
+)
+
+BIASES = slice(9, 18)
+
+
+def plus(state: NavigationState, e: Array) -> NavigationState:
+    """State (+) error e (20,): R <- Exp(dtheta) R, all else added."""
+    turned = quat_multiply(rotation_vector_to_quat(e[ATTITUDE]), state.quaternion)
+    return NavigationState(
+        state.position + e[POSITION],
+        state.velocity + e[VELOCITY],
+        turned / np.linalg.norm(turned),
+        state.gyro_bias + e[GYRO_BIAS],
+        state.accelerometer_bias + e[ACCELEROMETER_BIAS],
+        state.compass_bias + e[COMPASS_BIAS],
+        state.instrument_bias + e[18:20],
+        state.covariance,
+    )
+
+
+def propagated_mean(
+    state: NavigationState, rate: Array, force: Array, dt: float, gravity: float, phi: float
+) -> NavigationState:
+    """Nominal state after dt under mean rate and mean specific force, covariance unchanged."""
+    half = rotation_vector_to_quat(0.5 * dt * (rate - state.gyro_bias))
+    middle = quat_multiply(state.quaternion, half)
+    force_world = quat_to_matrix(middle) @ (force - state.accelerometer_bias)
+    acceleration = force_world + np.array([0.0, 0.0, gravity])
+    return NavigationState(
+        state.position + state.velocity * dt + 0.5 * acceleration * dt**2,
+        state.velocity + acceleration * dt,
+        quat_multiply(middle, half),
+        phi * state.gyro_bias,
+        phi * state.accelerometer_bias,
+        phi * state.compass_bias,
+        state.instrument_bias,
+        state.covariance,
+    )
+
+
+def transition_matrix(
+    state: NavigationState, rate: Array, force: Array, dt: float, phi: float
+) -> Array:
+    """F (20, 20): e after dt = F e before."""
+    half = rotation_vector_to_quat(0.5 * dt * (rate - state.gyro_bias))
+    R = quat_to_matrix(quat_multiply(state.quaternion, half))
+    A = skew(R @ (force - state.accelerometer_bias))
+    F = np.eye(SIZE)
+    F[POSITION, VELOCITY] = np.eye(3) * dt
+    F[ATTITUDE, GYRO_BIAS] = -R * dt
+    F[VELOCITY, ATTITUDE] = -A * dt
+    F[VELOCITY, GYRO_BIAS] = 0.5 * A @ R * dt**2
+    F[VELOCITY, ACCELEROMETER_BIAS] = -R * dt
+    F[POSITION, ATTITUDE] = 0.5 * dt * F[VELOCITY, ATTITUDE]
+    F[POSITION, GYRO_BIAS] = 0.5 * dt * F[VELOCITY, GYRO_BIAS]
+    F[POSITION, ACCELEROMETER_BIAS] = 0.5 * dt * F[VELOCITY, ACCELEROMETER_BIAS]
+    F[BIASES, BIASES] = phi * np.eye(9)
+    return F
+
+
+def process_covariance(noise: ProcessNoise, dt: float, phi: float) -> Array:
+    """Q (20, 20) that dt adds."""
+    Q = np.zeros((SIZE, SIZE))
+    Q[POSITION, POSITION] = np.eye(3) * noise.accelerometer * dt**3 / 3.0
+    Q[POSITION, VELOCITY] = Q[VELOCITY, POSITION] = np.eye(3) * noise.accelerometer * dt**2 / 2.0
+    Q[VELOCITY, VELOCITY] = np.eye(3) * noise.accelerometer * dt
+    Q[ATTITUDE, ATTITUDE] = np.eye(3) * noise.gyro * dt
+    Q[BIASES, BIASES] = (1.0 - phi**2) * np.diag(noise.bias_variance)
+    return Q
+
+
+def propagated(
+    state: NavigationState,
+    rate: Array,
+    force: Array,
+    dt: float,
+    gravity: float,
+    noise: ProcessNoise,
+) -> NavigationState:
+    """Nominal state and covariance F P F^T + Q after dt."""
+    phi = float(np.exp(-dt / noise.bias_time_constant))
+    F = transition_matrix(state, rate, force, dt, phi)
+    covariance = F @ state.covariance @ F.T + process_covariance(noise, dt, phi)
+    mean = propagated_mean(state, rate, force, dt, gravity, phi)
+    return mean._replace(covariance=covariance)
+
+
+def corrected(state: NavigationState, H: Array, residual: Array, N: Array) -> NavigationState:
+    """State and covariance after one measurement, Joseph form."""
+    P = state.covariance
+    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + N)
+    left = np.eye(SIZE) - K @ H
+    covariance = left @ P @ left.T + K @ N @ K.T
+    return plus(state, K @ residual)._replace(covariance=covariance)

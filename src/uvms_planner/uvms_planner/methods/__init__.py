@@ -1,0 +1,1 @@
+"""The planner methods that come with the package, one file each; see `interfaces.StepMethod`."""
