@@ -1,24 +1,69 @@
 """Compile every kernel once, so that the first run does not spend its time on that.
 
 `python -m uvms_bringup.warm` runs each scenario for a few simulated seconds; numba keeps what it
-compiled beside the sources.
+compiled beside the sources. It prints what is being compiled: on a terminal in one line, elsewhere
+in a line for each kernel. How many there will be is not known beforehand, only how many there are.
 """
 
 import sys
+import threading
+import time
 
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.simulate import simulate
+from uvms_dynamics.kernels.jit import kernel_names
+from uvms_dynamics.kernels.numba_internals.compilations import reported
 
 WARM_S = 3.0
 
 
+class ProgressLine:
+    """Counts kernels as numba begins to compile them, and shows the one that it is at."""
+
+    def __init__(self) -> None:
+        self._live = sys.stdout.isatty()
+        self._begun = time.monotonic()
+        self._all = kernel_names()
+        self._seen: set[tuple[str, str]] = set()
+        self._text = "starting"
+        self._ended = threading.Event()
+        self._ticker = threading.Thread(target=self._tick, daemon=True)
+
+    def __enter__(self) -> "ProgressLine":
+        self._ticker.start()
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self._ended.set()
+        self._ticker.join()
+        clear = "\r\x1b[K" if self._live else ""
+        print(f"{clear}{len(self._seen)} kernels compiled in {self._seconds():.0f} s", flush=True)
+
+    def kernel(self, module: str, name: str) -> None:
+        """A function that numba begins to compile; what is no kernel of the project is a part."""
+        key = (module, name)
+        if key not in self._all or key in self._seen:
+            return
+        self._seen.add(key)
+        self._text = f"kernel {len(self._seen)} of at most {len(self._all)}: {name}"
+        if not self._live:
+            print(f"{self._text} ({self._seconds():.0f} s)", flush=True)
+
+    def _seconds(self) -> float:
+        return time.monotonic() - self._begun
+
+    def _tick(self) -> None:
+        while self._live and not self._ended.wait(0.25):
+            print(f"\r\x1b[K{self._text} ({self._seconds():.0f} s)", end="", flush=True)
+
+
 def main() -> int:
     """Run every scenario that comes with the project for a moment."""
-    for name in known_scenarios():
-        print(f"compiling kernels: {name}", file=sys.stderr, flush=True)
-        scenario = load_scenario(name, duration_s=WARM_S)
-        vehicle = scenario.load_vehicle()
-        simulate(scenario, vehicle, scenario.goal.build(vehicle, scenario.plant))
+    with ProgressLine() as line, reported(line.kernel):
+        for name in known_scenarios():
+            scenario = load_scenario(name, duration_s=WARM_S)
+            vehicle = scenario.load_vehicle()
+            simulate(scenario, vehicle, scenario.goal.build(vehicle, scenario.plant))
     return 0
 
 

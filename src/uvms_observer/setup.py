@@ -16,7 +16,6 @@ setup(
         (f"share/{PACKAGE}", ["package.xml"]),
     ],
     install_requires=[
-        "numba>=0.61",
         "numpy>=1.26",
         "pydantic>=2.5",
         "scipy>=1.11",

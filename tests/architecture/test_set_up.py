@@ -105,8 +105,9 @@ def test_a_torn_stamp_counts_as_nothing_done(tool, tmp_path):
         ("src/uvms_msgs/msg/Reference.msg", {"interfaces"}),
         ("requirements/runtime.txt", {"runtime"}),
         ("requirements/development.txt", {"development"}),
-        ("requirements/ros.txt", {"runtime", "interfaces"}),
-        ("requirements/constraints.txt", {"runtime", "development"}),
+        ("requirements/build.txt", {"runtime"}),
+        ("requirements/ros.txt", {"ros", "interfaces"}),
+        ("requirements/constraints.txt", {"runtime", "ros", "development"}),
         ("src/uvms_control/setup.py", {"packages"}),
         ("src/uvms_control/uvms_control/__init__.py", set()),
     ],
@@ -125,4 +126,5 @@ def test_a_change_concerns_only_its_stages(tool, clone, change, stages):
 
 def test_the_stamp_of_this_environment_is_complete():
     stamp = json.loads((ROOT / ".venv" / "setup.json").read_text())
-    assert set(stamp) == {"environment", "runtime", "development", "interfaces", "packages"}
+    stages = {"environment", "runtime", "packages", "ros", "development", "interfaces"}
+    assert set(stamp) == stages

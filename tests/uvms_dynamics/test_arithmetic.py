@@ -12,8 +12,8 @@ from uvms_dynamics.kernels.arithmetic import bounded, hyperbolic_tangent, sine_c
 from uvms_dynamics.kernels.drag import coefficient
 from uvms_dynamics.kernels.drag_table import FIRST_OCTAVE, LAST_OCTAVE, resample
 from uvms_dynamics.kernels.jit import OPTIONS
-from uvms_dynamics.kernels.lanes import LANES, lane_vector
 from uvms_dynamics.kernels.layout import AXIAL, CROSS_FLOW, HULL
+from uvms_dynamics.kernels.numba_internals.lanes import LANES, lane_vector
 
 plain = njit(**{key: value for key, value in OPTIONS.items() if key != "forceinline"})
 ULP = np.finfo(float).eps

@@ -13,6 +13,7 @@ from uvms_core import registry
 from uvms_dynamics.kernels import compile_cache
 from uvms_dynamics.kernels.compile_cache import fingerprint
 
+DECORATORS = ("@njit", "@kernel", "@inner", "@exact_")
 KERNEL_PACKAGES = registry.names(registry.KERNELS)
 
 
@@ -71,7 +72,9 @@ def test_constants_that_kernels_take_from_other_files_count_too():
         path
         for folder in compile_cache._folders()
         for path in folder.rglob("*.py")
-        if any(mark in path.read_text("utf-8") for mark in ("@njit", "@kernel", "@inner"))
+        if any(
+            mark in path.read_text("utf-8") for mark in ("@njit", "@kernel", "@inner", "@exact_")
+        )
     ]
     found = {constant for path in kernels for constant in constants_from_elsewhere(path)}
     assert len(found) > 20

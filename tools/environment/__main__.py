@@ -13,12 +13,12 @@ import sys
 from pathlib import Path
 
 import machine
-from commands import Stage
-from stages import ENVIRONMENT, Context, plan
+from commands import Background, Stage
+from stages import ENVIRONMENT, FOR_KERNELS, Context, plan
 
 ROOT = Path(__file__).resolve().parents[2]
 # Stages that leave half-installed packages behind when they are interrupted.
-FRAGILE = ("runtime", "development", "packages")
+FRAGILE = ("runtime", "ros", "development", "packages")
 
 
 def main():
@@ -61,12 +61,24 @@ def _set_up(context, development, explicit):
     lock = os.open(str(ROOT), os.O_RDONLY)  # one set-up at a time; released when this program ends
     fcntl.flock(lock, fcntl.LOCK_EX)
     pending = _pending(context, development, explicit)  # again: another call may have done it
-    for stage in pending:
-        with Stage(stage.title, context.log) as running:
+    if not pending:
+        return
+    _carry_out_all([stage for stage in pending if stage in FOR_KERNELS], context, explicit)
+    kernels = _compile_kernels(context)  # on one core; the rest of the stages leave one free
+    try:
+        rest = [stage for stage in pending if stage not in FOR_KERNELS]
+        _carry_out_all(rest, context, explicit, kernels)
+        _finish(kernels, context)
+    except BaseException:
+        kernels.stop()
+        raise
+    print("[set-up] done; the log is %s" % context.log.relative_to(ROOT))
+
+
+def _carry_out_all(stages, context, explicit, beside=None):
+    for stage in stages:
+        with Stage(stage.title, context.log, beside) as running:
             _carry_out(stage, running, context, explicit)
-    if pending:
-        _warm(context)
-        print("[set-up] done; the log is %s" % context.log.relative_to(ROOT))
 
 
 def _carry_out(stage, running, context, explicit):
@@ -80,15 +92,19 @@ def _carry_out(stage, running, context, explicit):
     context.stamps().end(stage.name, key)
 
 
-def _warm(context):
+def _compile_kernels(context):
     """Compile the numba kernels now rather than in the middle of the first run."""
-    if not (ROOT / "bringup/uvms_bringup/warm.py").is_file():
-        return
-    try:
-        with Stage("compiling the numerical kernels", context.log) as running:
-            running.run([context.python, "-m", "uvms_bringup.warm"], context.env)
-    except machine.SetupError as fault:
-        print("[set-up] kernels not compiled ahead; the first run will try.\n%s" % fault)
+    command = [context.python, "-m", "uvms_bringup.warm"]
+    return Background(command, context.env, context.log.with_name("kernels.log"))
+
+
+def _finish(kernels, context):
+    with Stage("compiling the numerical kernels", context.log) as running:
+        running.watch(kernels)
+    if kernels.fault is None:
+        print("[set-up] %s" % kernels.line)
+    else:
+        print("[set-up] kernels not compiled ahead; the first run will try.\n%s" % kernels.fault)
 
 
 if __name__ == "__main__":

@@ -74,6 +74,7 @@ class Requirements:
         """Install the lists within the constraints."""
         command = [context.python, "-m", "pip", "install", "--no-input", "--progress-bar=off"]
         command += ["--disable-pip-version-check", "--prefer-binary"]
+        command += ["--no-compile"]  # Python compiles what is imported, a small part of it all
         for item in self._lists:
             command += ["-r", context.root / item]
         command += ["-c", context.root / "requirements/constraints.txt"]
@@ -143,11 +144,17 @@ class EditablePackages:
 
 
 ENVIRONMENT = PythonEnvironment()
-RUNTIME = Requirements("runtime", "ROS 2 and the libraries (pip)", "ros", "runtime")
+RUNTIME = Requirements("runtime", "libraries (pip)", "build", "runtime")
+PACKAGES = EditablePackages()
+ROS = Requirements("ros", "ROS 2 (pip)", "ros")
 DEVELOPMENT = Requirements("development", "test and development tools (pip)", "development")
+
+
+FOR_KERNELS = (ENVIRONMENT, RUNTIME, PACKAGES)
+"""Once these are done, the numba kernels can be compiled."""
 
 
 def plan(development):
     """The stages to carry out, in order."""
     extra = [DEVELOPMENT] if development else []
-    return [ENVIRONMENT, RUNTIME, *extra, Interfaces(), EditablePackages()]
+    return [*FOR_KERNELS, ROS, *extra, Interfaces()]

@@ -69,14 +69,14 @@ def roulette(fitness, draw):
     return last
 
 
-@kernel
+@inner
 def cross_over(first, second, point):
     """Swap the bits of two chromosomes from `point` on, in place."""
     for k in range(point, first.shape[0]):
         first[k], second[k] = second[k], first[k]
 
 
-@kernel
+@inner
 def mutate(chromosome, rate, rng):
     """Flip each bit with probability `rate`, in place."""
     for k in range(chromosome.shape[0]):
@@ -158,7 +158,8 @@ def evolve(model, problem, settings, seeds, rng):
     best = elite[0]
     if best < 0:
         return False, np.zeros(size), np.inf, np.inf, discarded, feasible, evaluations
-    increment = increments[best].copy()
+    increment = np.empty(size)
+    copy_into(increment, increments[best])
     worst, least, judged = refine(
         model, problem, increment, violation[best], cost[best], settings.refinements
     )

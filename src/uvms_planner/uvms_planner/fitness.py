@@ -5,7 +5,7 @@ import numpy as np
 from uvms_dynamics import coupling_wrench, restoring_wrench
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import attitude_violation
-from uvms_planner.problem import VEHICLE, yaw_quaternion
+from uvms_planner.problem import VEHICLE, configuration_after, yaw_quaternion
 from uvms_planner.projection import project, within_tolerance
 
 
@@ -42,11 +42,16 @@ def self_disturbance(model, problem, increment, lookahead):
     """
     h = problem.step
     nu, nu_dot = body_motion(problem, increment)
-    q = problem.configuration[VEHICLE:] + increment[VEHICLE:]
-    q_dot = increment[VEHICLE:] / h
-    q_ddot = (increment[VEHICLE:] - problem.previous[VEHICLE:]) / h**2
+    q, ahead = np.empty(increment.shape[0] - VEHICLE), np.empty(increment.shape[0] - VEHICLE)
+    q_dot, q_ddot = np.empty_like(q), np.empty_like(q)
+    for i in range(q.shape[0]):
+        j = VEHICLE + i
+        q[i] = problem.configuration[j] + increment[j]
+        q_dot[i] = increment[j] / h
+        q_ddot[i] = (increment[j] - problem.previous[j]) / h**2
+        ahead[i] = q[i] + lookahead * q_dot[i]
     level = yaw_quaternion(problem.configuration[3] + increment[3])
-    restoring = restoring_wrench(model, level, q + lookahead * q_dot)
+    restoring = restoring_wrench(model, level, ahead)
     coupling = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
     wrenches = np.zeros(12)
     for i in range(6):
@@ -92,7 +97,6 @@ def judge(model, problem, increment):
     distance, angle = project(model, problem, increment)
     if not within_tolerance(problem, distance, angle):
         return False, np.inf, np.inf
-    violation = attitude_violation(
-        model, problem, problem.configuration[VEHICLE:] + increment[VEHICLE:]
-    )
+    q = configuration_after(problem, increment)[VEHICLE:]
+    violation = attitude_violation(model, problem, q)
     return True, violation, cost(model, problem, increment)

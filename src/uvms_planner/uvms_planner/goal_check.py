@@ -141,7 +141,8 @@ def follow_by_projection(model, problem, positions, rotations, lower, upper, fro
         distance, angle = project(model, problem, increment)
         if not within_tolerance(problem, distance, angle):
             return index, distance, angle
-        copy_into(problem.configuration, problem.configuration + increment)
+        for i in range(increment.shape[0]):
+            problem.configuration[i] += increment[i]
     return -1, 0.0, 0.0
 
 

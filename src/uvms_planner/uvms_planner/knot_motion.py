@@ -3,6 +3,8 @@
 import numpy as np
 
 from uvms_dynamics.kernels.jit import kernel
+from uvms_planner.linear import copy_into
+from uvms_planner.problem import configuration_after
 from uvms_planner.projection import configuration_jacobian, weighted_step
 
 DIFFERENCE_S = 1e-3
@@ -18,9 +20,11 @@ def knot_motion(model, problem, increment, tool_rate, tool_acceleration):
     acceleration (6,): J c_dot = y_dot and J c_ddot + J_dot c_dot = y_ddot.
     """
     h = problem.step
-    end = problem.configuration + increment
-    rate = (3 * increment - problem.previous) / (2 * h)
-    acceleration = (increment - problem.previous) / h**2
+    end = configuration_after(problem, increment)
+    rate, acceleration = np.empty_like(end), np.empty_like(end)
+    for i in range(end.shape[0]):
+        rate[i] = (3 * increment[i] - problem.previous[i]) / (2 * h)
+        acceleration[i] = (increment[i] - problem.previous[i]) / h**2
     meet(model, problem, end, tool_rate, tool_acceleration, rate, acceleration)
     return rate, acceleration
 
@@ -33,24 +37,34 @@ def meet(model, problem, end, tool_rate, tool_acceleration, rate, acceleration):
     """
     jacobian = configuration_jacobian(model, end)
     _meet(problem, jacobian, tool_rate, rate)
-    after = configuration_jacobian(model, end + DIFFERENCE_S * rate)
-    before = configuration_jacobian(model, end - DIFFERENCE_S * rate)
-    wanted = tool_acceleration.copy()
-    _subtract_product((after - before) / (2 * DIFFERENCE_S), rate, wanted)
-    _meet(problem, jacobian, wanted, acceleration)
+    ahead, behind = np.empty_like(end), np.empty_like(end)
+    for i in range(end.shape[0]):
+        ahead[i], behind[i] = end[i] + DIFFERENCE_S * rate[i], end[i] - DIFFERENCE_S * rate[i]
+    slope = configuration_jacobian(model, ahead)
+    before = configuration_jacobian(model, behind)
+    for a in range(slope.shape[0]):
+        for i in range(slope.shape[1]):
+            slope[a, i] = (slope[a, i] - before[a, i]) / (2 * DIFFERENCE_S)
+    target = np.empty(6)
+    copy_into(target, tool_acceleration)
+    _subtract_product(slope, rate, target)
+    _meet(problem, jacobian, target, acceleration)
 
 
 @kernel
-def _meet(problem, jacobian, wanted, vector):
-    """Change `vector` (m,) in place the least way so that J vector = wanted."""
+def _meet(problem, jacobian, target, vector):
+    """Change `vector` (m,) in place the least way so that J vector = target."""
     equations = 6 if problem.oriented else 3
-    free = problem.readiness > 0.0
-    step = np.zeros_like(vector)
+    free, step = np.empty(vector.shape[0], dtype=np.bool_), np.empty(vector.shape[0])
+    for i in range(vector.shape[0]):
+        free[i] = problem.readiness[i] > 0.0
+    error = np.empty(6)
     for _ in range(2):  # the second takes away what the damping leaves
-        error = wanted.copy()
+        copy_into(error, target)
         _subtract_product(jacobian, vector, error)
         weighted_step(jacobian, error, problem.readiness, free, problem.damping, equations, step)
-        vector += step
+        for i in range(vector.shape[0]):
+            vector[i] += step[i]
 
 
 @kernel

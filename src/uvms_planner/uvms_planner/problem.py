@@ -42,6 +42,15 @@ class StepProblem(NamedTuple):
 
 
 @inner
+def configuration_after(problem, increment):
+    """The configuration c (m,) at the end of the step."""
+    end = np.empty(increment.shape[0])
+    for i in range(increment.shape[0]):
+        end[i] = problem.configuration[i] + increment[i]
+    return end
+
+
+@inner
 def yaw_quaternion(yaw):
     """Quaternion (4,), body to world, of a level vehicle with this yaw in rad."""
     quaternion = np.zeros(4)

@@ -10,7 +10,7 @@ from uvms_dynamics import end_effector, end_effector_jacobian
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.linear import solve_in_place
-from uvms_planner.problem import VEHICLE, yaw_quaternion
+from uvms_planner.problem import VEHICLE, configuration_after, yaw_quaternion
 
 CONVERGED_M = 1e-8
 CONVERGED_RAD = 1e-8
@@ -23,7 +23,7 @@ def configuration_jacobian(model, configuration):
     The columns of eq. (12) for a level vehicle: x, y, z are world axes already, and psi turns about
     the body z axis, which is the world's.
     """
-    q = configuration[VEHICLE:].copy()
+    q = configuration[VEHICLE:]
     full = end_effector_jacobian(model, yaw_quaternion(configuration[3]), q)
     jacobian = np.zeros((6, configuration.shape[0]))
     for row in range(6):
@@ -40,13 +40,13 @@ def tool_pose(model, configuration):
     """Position (3,) and rotation (3, 3) of the tool in the world for c (m,), eq. (1)."""
     return end_effector(
         model,
-        configuration[:3].copy(),
+        configuration[:3],
         yaw_quaternion(configuration[3]),
-        configuration[VEHICLE:].copy(),
+        configuration[VEHICLE:],
     )
 
 
-@kernel
+@inner
 def rotation_error(desired, actual):
     """Rotation vector (3,), world axes, that turns `actual` (3, 3) into `desired` (3, 3)."""
     turn = np.zeros((3, 3))
@@ -60,7 +60,7 @@ def rotation_error(desired, actual):
 @inner
 def tool_error(model, problem, increment, error):
     """Fill `error` (6,) with desired minus actual pose; return (m, rad) distances."""
-    position, rotation = tool_pose(model, problem.configuration + increment)
+    position, rotation = tool_pose(model, configuration_after(problem, increment))
     for i in range(3):
         error[i] = problem.position[i] - position[i]
     distance = np.sqrt(error[0] ** 2 + error[1] ** 2 + error[2] ** 2)
@@ -116,7 +116,7 @@ def project(model, problem, increment):
     for _ in range(problem.iterations):
         if distance < CONVERGED_M and angle < CONVERGED_RAD:
             break
-        jacobian = configuration_jacobian(model, problem.configuration + increment)
+        jacobian = configuration_jacobian(model, configuration_after(problem, increment))
         for i in range(size):
             free[i] = problem.readiness[i] > 0.0
         for _pass in range(size):

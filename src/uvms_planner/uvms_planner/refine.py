@@ -9,6 +9,7 @@ from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge, judged_disturbance
 from uvms_planner.linear import copy_into, solve_in_place
+from uvms_planner.problem import configuration_after
 from uvms_planner.projection import configuration_jacobian, tool_error
 
 DIFFERENCE = 1e-4  # of a variable's reach
@@ -104,17 +105,18 @@ def refine(model, problem, increment, violation, cost, rounds):
     """
     size = increment.shape[0]
     hessian, gradient = np.zeros((size, size)), np.zeros(size)
-    error, step = np.zeros(6), np.zeros(size)
+    error, step, trial = np.zeros(6), np.zeros(size), np.zeros(size)
     judged = 0
     for _ in range(rounds):
         normal_equations(model, problem, increment, hessian, gradient)
         tool_error(model, problem, increment, error)
-        jacobian = configuration_jacobian(model, problem.configuration + increment)
+        jacobian = configuration_jacobian(model, configuration_after(problem, increment))
         if not constrained_step(problem, increment, hessian, gradient, jacobian, error, step):
             break
         improved, share = False, 1.0
         for _try in range(HALVINGS):
-            trial = increment + share * step
+            for i in range(size):
+                trial[i] = increment[i] + share * step[i]
             valid, trial_violation, trial_cost = judge(model, problem, trial)
             judged += 1
             if valid and better(trial_violation, trial_cost, violation, cost):

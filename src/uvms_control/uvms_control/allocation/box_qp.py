@@ -14,7 +14,8 @@ benchmark `allocation` compares them.
 """
 
 import numpy as np
-from numba import njit
+
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
 FREE, AT_LOWER, AT_UPPER = 0, -1, 1
 NOT_POSITIVE_DEFINITE, TOO_MANY_STEPS = -1, -2
@@ -22,7 +23,7 @@ NOT_POSITIVE_DEFINITE, TOO_MANY_STEPS = -1, -2
 MULTIPLIER_TOLERANCE = 1e-12
 
 
-@njit(cache=True)
+@exact_inner
 def _factorise(hessian, free, count, factor):
     """Cholesky factor (lower) of the free block of the Hessian; False if it is not positive."""
     for i in range(count):
@@ -39,7 +40,7 @@ def _factorise(hessian, free, count, factor):
     return True
 
 
-@njit(cache=True)
+@exact_inner
 def _solve_factored(factor, count, x):
     """Solve L L^T x = x in place."""
     for i in range(count):
@@ -52,7 +53,7 @@ def _solve_factored(factor, count, x):
         x[i] /= factor[i, i]
 
 
-@njit(cache=True)
+@exact_inner
 def _gradient(hessian, g, u, gradient):
     """H u + g into `gradient`; returns the size of its terms, the measure of its rounding error."""
     scale = 0.0
@@ -67,7 +68,7 @@ def _gradient(hessian, g, u, gradient):
     return scale
 
 
-@njit(cache=True)
+@exact_inner
 def _start(lower, upper, u, state):
     """Clip the warm start into the box; held variables sit exactly on their bounds."""
     for i in range(u.size):
@@ -80,7 +81,7 @@ def _start(lower, upper, u, state):
             u[i] = upper[i]
 
 
-@njit(cache=True)
+@exact_inner
 def _walk(lower, upper, u, state, free, count, direction):
     """Move along `direction` to its end (True) or to the first bound, which is then held."""
     length, blocking, side = 1.0, -1, FREE
@@ -105,7 +106,7 @@ def _walk(lower, upper, u, state, free, count, direction):
     return False
 
 
-@njit(cache=True)
+@exact_inner
 def _release(gradient, lower, upper, state, tolerance):
     """Free the held variable with the worst multiplier; False if none is wrong (optimal)."""
     worst, which = tolerance, -1
@@ -121,7 +122,7 @@ def _release(gradient, lower, upper, state, tolerance):
     return True
 
 
-@njit(cache=True)
+@exact_kernel
 def solve_box_qp(hessian, g, lower, upper, u, state, max_steps):
     """Solve the box QP in place, from the warm start (u, state); returns the steps taken.
 

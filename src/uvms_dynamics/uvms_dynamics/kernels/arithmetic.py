@@ -8,7 +8,7 @@ they beat: the compiler inlines them and works on several at once.
 import math
 
 from uvms_dynamics.kernels.jit import inner
-from uvms_dynamics.kernels.primitives import (
+from uvms_dynamics.kernels.numba_internals.primitives import (
     ROUND,
     copysign,
     fabs,

@@ -11,15 +11,6 @@ from numba.extending import overload
 
 from uvms_dynamics.kernels.drag_table import FIRST_OCTAVE, LAST_OCTAVE, PER_OCTAVE_BITS
 from uvms_dynamics.kernels.jit import OPTIONS, inner
-from uvms_dynamics.kernels.lanes import (
-    LANES,
-    LaneArrayType,
-    LanesType,
-    lane_of,
-    lanes_at,
-    put_lanes,
-    with_lane,
-)
 from uvms_dynamics.kernels.layout import (
     AXIAL,
     AXIAL_AREA,
@@ -39,7 +30,24 @@ from uvms_dynamics.kernels.layout import (
     STRIPS,
     WORK_COLUMNS,
 )
-from uvms_dynamics.kernels.primitives import fabs, item, maximum, minimum, put_item, sqrt, zero_like
+from uvms_dynamics.kernels.numba_internals.lanes import (
+    LANES,
+    LaneArrayType,
+    LanesType,
+    lane_of,
+    lanes_at,
+    put_lanes,
+    with_lane,
+)
+from uvms_dynamics.kernels.numba_internals.primitives import (
+    fabs,
+    item,
+    maximum,
+    minimum,
+    put_item,
+    sqrt,
+    zero_like,
+)
 from uvms_dynamics.kernels.spatial import angular, cross, linear, load6, minus, pair, plus3, store6
 
 _LOWEST, _HIGHEST = 2.0**FIRST_OCTAVE, 2.0**LAST_OCTAVE

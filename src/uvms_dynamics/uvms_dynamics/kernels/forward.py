@@ -39,7 +39,7 @@ from uvms_dynamics.kernels.motion import (
     to_hull,
     velocity_product,
 )
-from uvms_dynamics.kernels.primitives import zero_like
+from uvms_dynamics.kernels.numba_internals.primitives import zero_like
 from uvms_dynamics.kernels.spatial import (
     force_to_parent,
     linear,

@@ -1,20 +1,45 @@
 """How kernels are compiled: cached on disk, IEEE arithmetic, no hidden checks.
 
-`contract` lets the compiler round a product and the sum that follows it once instead of twice.
+`contract` lets the compiler round a product and the sum that follows it once instead of twice; the
+exact ones round every operation, as numpy does. No function pointers for C are made, and the sets
+of options are few: numba compiles its own functions anew for each of them.
 """
 
+from collections.abc import Callable
 from typing import Any
 
-from numba import extending, njit
+from numba import njit
 
-_ARITHMETIC: Any = {"error_model": "numpy", "fastmath": {"contract"}}
-OPTIONS: Any = {**_ARITHMETIC, "forceinline": True}
+from uvms_dynamics.kernels.numba_internals.parts import part
 
-kernel = njit(cache=True, **_ARITHMETIC)
-"""For functions that are called from Python or from other modules' kernels."""
+_EXACT: Any = {"error_model": "numpy", "no_cfunc_wrapper": True}
+_CONTRACTED: Any = {**_EXACT, "fastmath": {"contract"}}
+OPTIONS: Any = {**_CONTRACTED, "forceinline": True}
 
-inner = njit(cache=True, **OPTIONS)
+_names: set[tuple[str, str]] = set()
+
+
+def _kernel(options: Any) -> Callable[[Callable], Any]:
+    def decorate(function: Callable) -> Any:
+        _names.add((function.__module__, function.__qualname__))
+        return njit(cache=True, **options)(function)
+
+    return decorate
+
+
+kernel = _kernel(_CONTRACTED)
+"""For functions that are called from Python or from several kernels."""
+
+inner = part(**OPTIONS)
 """For parts of a kernel: always inlined, or each call would copy every table of the model."""
 
-intrinsic: Any = extending.intrinsic
-"""For functions that write LLVM's instructions themselves; numba fills in their first argument."""
+exact_kernel = _kernel(_EXACT)
+"""For functions that are called from Python and round every operation."""
+
+exact_inner = part(**_EXACT)
+"""For parts of such a kernel; the compiler chooses what to inline."""
+
+
+def kernel_names() -> frozenset[tuple[str, str]]:
+    """(module, name) of the kernels of all modules that have been imported."""
+    return frozenset(_names)

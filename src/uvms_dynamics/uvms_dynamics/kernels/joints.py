@@ -14,7 +14,7 @@ from uvms_dynamics.kernels.layout import (
     VISCOUS,
 )
 from uvms_dynamics.kernels.motion import check_joints
-from uvms_dynamics.kernels.primitives import maximum
+from uvms_dynamics.kernels.numba_internals.primitives import maximum
 
 
 @kernel

@@ -5,63 +5,109 @@ seven of them in a tuple took longer than the dynamics. Row i belongs to body i 
 to the joint that moves it. An inertia is a symmetric 6x6 matrix [A, B; B^T, C] in 21 numbers: the
 upper triangle of A row by row, B row by row, the upper triangle of C.
 
-The numbers are np.int64 because numba compiles a function anew for every literal int it is called
-with: a third of the time to compile.
+Each group of columns is declared once, name -> width; where a column begins follows from the widths
+before it. The numbers are np.int64 because numba compiles a kernel anew for every literal int that
+it is called with.
 """
+
+from collections.abc import Iterable
 
 import numpy as np
 
 FIRST = np.int64(0)
 
+
+def _columns(widths: dict[str, int], begin: int = 0) -> Iterable[np.int64]:
+    """Where each column of a group begins, the first one at `begin`."""
+    ends = begin + np.cumsum(list(widths.values()))
+    return np.concatenate([[begin], ends[:-1]]).astype(np.int64)
+
+
 # Model (rows, 48): bodies 0..n, fixtures, then drag cylinders and coefficients, counted by item.
-# Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin
-INERTIA = np.int64(0)  # 21
-NET_WEIGHT = np.int64(21)  # m g - rho V g
-NET_MOMENT = np.int64(22)  # 3: m g r_g - rho V g r_b
+MODEL_COLUMNS = np.int64(48)
+
+# Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin; weight
+# m g - rho V g and its first moment m g r_g - rho V g r_b
+BODY = {"INERTIA": 21, "NET_WEIGHT": 1, "NET_MOMENT": 3}
+INERTIA, NET_WEIGHT, NET_MOMENT = _columns(BODY)
+_BODY_END = sum(BODY.values())
 
 # The joint that moves the body, in rows 1..n
-PLACE = np.int64(25)  # 3: joint frame's origin in the parent's
-COS_TWIST, SIN_TWIST = np.int64(28), np.int64(29)  # Rx(twist) comes before the joint's Rz
-OFFSET = np.int64(30)  # added to the joint angle
-ROTOR = np.int64(31)  # rotor inertia
-VISCOUS, COULOMB = np.int64(32), np.int64(33)  # friction
-PER_WIDTH = np.int64(34)  # 1 / the rate at which sliding friction sets in
-LOWER, UPPER, STIFFNESS, DISSIPATION = np.arange(35, 39, dtype=np.int64)  # end stops
-EFFORT = np.int64(39)  # greatest torque
-DRAG_BEGIN, DRAG_END = np.int64(40), np.int64(41)  # its drag cylinders
+JOINT = {
+    "PLACE": 3,  # joint frame's origin in the parent's
+    "COS_TWIST": 1,  # Rx(twist) comes before the joint's Rz
+    "SIN_TWIST": 1,
+    "OFFSET": 1,  # added to the joint angle
+    "ROTOR": 1,  # rotor inertia
+    "VISCOUS": 1,  # friction
+    "COULOMB": 1,
+    "PER_WIDTH": 1,  # 1 / the rate at which sliding friction sets in
+    "LOWER": 1,  # end stops
+    "UPPER": 1,
+    "STIFFNESS": 1,
+    "DISSIPATION": 1,
+    "EFFORT": 1,  # greatest torque
+    "DRAG_BEGIN": 1,  # its drag cylinders
+    "DRAG_END": 1,
+}
+PLACE, COS_TWIST, SIN_TWIST, OFFSET, ROTOR, VISCOUS, COULOMB, PER_WIDTH, *_rest = _columns(
+    JOINT, _BODY_END
+)
+LOWER, UPPER, STIFFNESS, DISSIPATION, EFFORT, DRAG_BEGIN, DRAG_END = _rest
 
 # The hull, in row 0 instead
 HULL = np.int64(0)
-DAMPING, QUADRATIC = np.int64(25), np.int64(31)  # 6 each, body axes
-COS_TURN, SIN_TURN = np.int64(37), np.int64(38)  # hull frame in the body frame: Rz(turn)
-JOINTS = np.int64(39)  # n
-CYLINDERS = np.int64(40)  # first item of the drag cylinders
-GROUPS, STRIPS = np.int64(41), np.int64(42)  # how many of eight cylinders; strips on each
-CROSS_FLOW, AXIAL = np.int64(43), np.int64(44)  # first items of the drag coefficients
+HULL_ONLY = {
+    "DAMPING": 6,  # body axes
+    "QUADRATIC": 6,
+    "COS_TURN": 1,  # hull frame in the body frame: Rz(turn)
+    "SIN_TURN": 1,
+    "JOINTS": 1,  # n
+    "CYLINDERS": 1,  # first item of the drag cylinders
+    "GROUPS": 1,  # of eight cylinders
+    "STRIPS": 1,  # on each cylinder
+    "CROSS_FLOW": 1,  # first items of the drag coefficients
+    "AXIAL": 1,
+}
+DAMPING, QUADRATIC, COS_TURN, SIN_TURN, *_rest = _columns(HULL_ONLY, _BODY_END)
+JOINTS, CYLINDERS, GROUPS, STRIPS, CROSS_FLOW, AXIAL = _rest
 
 # Fixtures, in row n + 1
-TOOL_ROTATION, TOOL_POSITION = np.int64(0), np.int64(9)  # in the last link's frame
-ADDED_MASS = np.int64(12)  # 21: of the hull alone, about the body origin, body axes
-TETHER_DEPTH = np.int64(33)  # reference depth; only the simulation reads these
-TETHER_WEIGHT, TETHER_MOMENT = np.int64(34), np.int64(35)  # 1 and 3, per metre of depth
+FIXTURES = {
+    "TOOL_ROTATION": 9,  # in the last link's frame
+    "TOOL_POSITION": 3,
+    "ADDED_MASS": 21,  # of the hull alone, about the body origin, body axes
+    "TETHER_DEPTH": 1,  # reference depth; only the simulation reads the tether's
+    "TETHER_WEIGHT": 1,  # per metre of depth
+    "TETHER_MOMENT": 3,  # per metre of depth
+}
+TOOL_ROTATION, TOOL_POSITION, ADDED_MASS, *_tether = _columns(FIXTURES)
+TETHER_DEPTH, TETHER_WEIGHT, TETHER_MOMENT = _tether
 
 # Drag cylinders, in groups of eight: each of these numbers of all eight, then the next
-CENTER, AXIS = np.int64(0), np.int64(3)
-CROSS_REYNOLDS, AXIAL_REYNOLDS = np.int64(6), np.int64(7)  # Reynolds number of 1 m/s
-AXIAL_AREA = np.int64(8)  # 1/2 rho x wetted surface
-STRIP = np.int64(9)  # pairs: place along the axis, 1/2 rho x diameter x length
+CYLINDER = {
+    "CENTER": 3,
+    "AXIS": 3,
+    "CROSS_REYNOLDS": 1,  # Reynolds number of 1 m/s
+    "AXIAL_REYNOLDS": 1,
+    "AXIAL_AREA": 1,  # 1/2 rho x wetted surface
+    "STRIP": 2,  # of the first one: place along the axis, 1/2 rho x diameter x length; then others
+}
+CENTER, AXIS, CROSS_REYNOLDS, AXIAL_REYNOLDS, AXIAL_AREA, STRIP = _columns(CYLINDER)
 
 # Coefficients of drag: pairs (a, b) of C(Re) = a + b Re in the cells of `drag_table`
 
-MODEL_COLUMNS = np.int64(48)
-
 # Workspace (rows, 21). Row i: joint i and the link that it moves, in its frame; behind row n there
 # are slots for the drag cylinders, see `drag`.
-COS, SIN = np.int64(0), np.int64(1)  # of the joint angle with its offset
-RATE = np.int64(2)  # of the joint; in the end its acceleration
-TORQUE = np.int64(3)  # of the joint; what is left of it for the joint's own acceleration
-VELOCITY_PRODUCT = np.int64(4)  # 4: V x S q_dot without its two zeros
-FORCE = np.int64(8)  # 6: force on, or bias force of, the body
-AXIS_FORCE = np.int64(14)  # 6: U = I S of the articulated body
-INVERSE = np.int64(20)  # 1 / D of the articulated body
-WORK_COLUMNS = np.int64(21)
+WORKSPACE = {
+    "COS": 1,  # of the joint angle with its offset
+    "SIN": 1,
+    "RATE": 1,  # of the joint; in the end its acceleration
+    "TORQUE": 1,  # of the joint; what is left of it for the joint's own acceleration
+    "VELOCITY_PRODUCT": 4,  # V x S q_dot without its two zeros
+    "FORCE": 6,  # force on, or bias force of, the body
+    "AXIS_FORCE": 6,  # U = I S of the articulated body
+    "INVERSE": 1,  # 1 / D of the articulated body
+}
+COS, SIN, RATE, TORQUE, VELOCITY_PRODUCT, FORCE, AXIS_FORCE, INVERSE = _columns(WORKSPACE)
+WORK_COLUMNS = np.int64(sum(WORKSPACE.values()))

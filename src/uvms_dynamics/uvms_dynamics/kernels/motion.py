@@ -6,7 +6,6 @@ from uvms_dynamics.kernels.arithmetic import sine_cosine
 from uvms_dynamics.kernels.drag import SLOT_NUMBERS, gather_drag
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
-from uvms_dynamics.kernels.lanes import LANES
 from uvms_dynamics.kernels.layout import (
     COS,
     COS_TURN,
@@ -22,7 +21,8 @@ from uvms_dynamics.kernels.layout import (
     SIN_TURN,
     WORK_COLUMNS,
 )
-from uvms_dynamics.kernels.primitives import fabs
+from uvms_dynamics.kernels.numba_internals.lanes import LANES
+from uvms_dynamics.kernels.numba_internals.primitives import fabs
 from uvms_dynamics.kernels.spatial import (
     angular,
     gyroscopic,

@@ -1,12 +1,7 @@
 """The functions of `uvms_core.rotations`, compiled: for kernels, and faster from Python."""
 
-from typing import Any
-
-from numba import njit
-
 from uvms_core import rotations
-
-_compiled: Any = njit(cache=True)
+from uvms_dynamics.kernels.jit import exact_kernel as _compiled
 
 skew = _compiled(rotations.skew)
 quat_multiply = _compiled(rotations.quat_multiply)

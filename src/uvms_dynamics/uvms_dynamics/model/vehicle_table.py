@@ -29,7 +29,7 @@ from uvms_core.vehicle.frames import (
 from uvms_core.vehicle.shapes import cylinder_surface, move_to_origin
 from uvms_dynamics.kernels import layout
 from uvms_dynamics.kernels.drag_table import cell_lines
-from uvms_dynamics.kernels.lanes import LANES
+from uvms_dynamics.kernels.numba_internals.lanes import LANES
 from uvms_dynamics.kernels.rotations import skew
 
 Model = Array

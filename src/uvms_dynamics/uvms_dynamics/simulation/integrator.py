@@ -23,7 +23,7 @@ from uvms_dynamics.kernels.motion import (
     make_workspace,
     set_angle,
 )
-from uvms_dynamics.kernels.primitives import sqrt
+from uvms_dynamics.kernels.numba_internals.primitives import sqrt
 from uvms_dynamics.kernels.spatial import load6, plus, six, store6
 from uvms_dynamics.model.vehicle_table import Model, build_model
 from uvms_dynamics.simulation.tether import load_wrench, tether_load

@@ -7,8 +7,8 @@ import numpy as np
 from uvms_core.errors import ConfigError
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import kernel
-from uvms_dynamics.kernels.lanes import LANES, lane_table, lane_vector
 from uvms_dynamics.kernels.layout import FIRST, HULL, JOINTS, WORK_COLUMNS
+from uvms_dynamics.kernels.numba_internals.lanes import LANES, lane_table, lane_vector
 from uvms_dynamics.simulation.integrator import (
     System,
     advance,

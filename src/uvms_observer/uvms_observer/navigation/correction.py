@@ -8,14 +8,15 @@ The Joseph form keeps P positive semidefinite under rounding. The same in plain 
 """
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
+from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
-@njit(cache=True)
+@exact_kernel
 def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: float) -> float:
     """Correct the state in place, unless the residual's distance is beyond the gate.
 
@@ -28,8 +29,12 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
     Returns:
         d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed.
     """
-    PHt = state.covariance @ np.ascontiguousarray(H.T)
-    S_inverse = np.linalg.inv(H @ PHt + N)
+    PHt = state.covariance @ transposed(H)
+    S = H @ PHt
+    for i in range(N.shape[0]):
+        for j in range(N.shape[0]):
+            S[i, j] += N[i, j]
+    S_inverse = np.linalg.inv(S)
     distance = residual.dot(S_inverse @ residual)
     if not distance <= gate:
         return distance
@@ -39,18 +44,22 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
     return distance
 
 
-@njit(cache=True)
+@exact_inner
 def _correct_covariance(P: Array, K: Array, H: Array, N: Array) -> None:
-    left = -(K @ H)
-    for i in range(SIZE):
-        left[i, i] += 1.0
-    joseph = left @ P @ np.ascontiguousarray(left.T) + K @ N @ np.ascontiguousarray(K.T)
+    left = K @ H
     for i in range(SIZE):
         for j in range(SIZE):
-            P[i, j] = 0.5 * (joseph[i, j] + joseph[j, i])
+            left[i, j] = (1.0 if i == j else 0.0) - left[i, j]
+    kept = (left @ P) @ transposed(left)
+    added = (K @ N) @ transposed(K)
+    for i in range(SIZE):
+        for j in range(i + 1):
+            mean = 0.5 * ((kept[i, j] + added[i, j]) + (kept[j, i] + added[j, i]))
+            P[i, j] = mean
+            P[j, i] = mean
 
 
-@njit(cache=True)
+@exact_inner
 def _add_error(state: NavigationState, e: Array) -> None:
     """Add the error, state <- state (+) e; the attitude error turns about the axes of map_ned."""
     turned = quat_multiply(rotation_vector_to_quat(e[6:9]), state.quaternion)

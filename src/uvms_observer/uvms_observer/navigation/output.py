@@ -6,27 +6,31 @@ With d from the IMU to the body origin (body axes) and w = w_m - b_g:
 """
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array, Odometry
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
+from uvms_observer.navigation.arrays import body_rate, transposed
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
-@njit(cache=True)
+@exact_kernel
 def _pose(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Position (3,) of the body origin and pose covariance (6, 6), both about map_ned axes."""
-    offset = quat_to_matrix(state.quaternion) @ lever
-    J = np.zeros((6, SIZE))
+    position = quat_to_matrix(state.quaternion) @ lever
+    J, arm = np.zeros((6, SIZE)), skew(position)
     for i in range(3):
         J[i, i] = 1.0
         J[3 + i, 6 + i] = 1.0
-    J[:3, 6:9] = -skew(offset)
-    covariance = J @ state.covariance @ np.ascontiguousarray(J.T)
-    return state.position + offset, 0.5 * (covariance + covariance.T)
+        for k in range(3):
+            J[i, 6 + k] = -arm[i, k]
+        position[i] += state.position[i]
+    covariance = (J @ state.covariance) @ transposed(J)
+    _symmetrize(covariance)
+    return position, covariance
 
 
-@njit(cache=True)
+@exact_kernel
 def _twist(
     state: NavigationState, lever: Array, rate: Array, rate_variance: float
 ) -> tuple[Array, Array]:
@@ -35,21 +39,35 @@ def _twist(
     The rate is the gyro's, so that its noise is part of the result, of the velocity by the lever.
     """
     R = quat_to_matrix(state.quaternion)
-    arm = skew(lever)
-    omega = rate - state.gyro_bias
-    nu = np.empty(6)
-    nu[:3] = R.T @ state.velocity - arm @ omega
-    nu[3:] = omega
-    J = np.zeros((6, SIZE))
-    J[:3, 3:6] = R.T
-    J[:3, 6:9] = R.T @ skew(state.velocity)
+    arm, turned = skew(lever), R.T @ skew(state.velocity)
+    omega = body_rate(state, rate)
+    velocity, swing = R.T @ state.velocity, arm @ omega
+    nu, J = np.empty(6), np.zeros((6, SIZE))
     G = np.zeros((6, 3))  # by the rate's error, which is -db_g - n
-    G[:3] = -arm
-    G[3:] = np.eye(3)
-    J[:, 9:12] = -G
-    covariance = J @ state.covariance @ np.ascontiguousarray(J.T)
-    covariance += rate_variance * (G @ np.ascontiguousarray(G.T))
-    return nu, 0.5 * (covariance + covariance.T)
+    for i in range(3):
+        nu[i], nu[3 + i] = velocity[i] - swing[i], omega[i]
+        G[3 + i, i] = 1.0
+        J[3 + i, 9 + i] = -1.0
+        for k in range(3):
+            J[i, 3 + k] = R[k, i]
+            J[i, 6 + k] = turned[i, k]
+            G[i, k], J[i, 9 + k] = -arm[i, k], arm[i, k]
+    covariance, noise = (J @ state.covariance) @ transposed(J), G @ transposed(G)
+    for i in range(6):
+        for k in range(6):
+            covariance[i, k] += rate_variance * noise[i, k]
+    _symmetrize(covariance)
+    return nu, covariance
+
+
+@exact_inner
+def _symmetrize(matrix: Array) -> None:
+    """Make both triangles the mean of the two."""
+    for i in range(matrix.shape[0]):
+        for k in range(i):
+            mean = 0.5 * (matrix[i, k] + matrix[k, i])
+            matrix[i, k] = mean
+            matrix[k, i] = mean
 
 
 def odometry(

@@ -18,9 +18,9 @@ same with full matrices is `numpy_reference.py`.
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
 from uvms_observer.navigation.state import SIZE, NavigationState
 
@@ -34,7 +34,7 @@ class ProcessNoise(NamedTuple):
     bias_time_constant: float  # s, of these first-order Gauss-Markov biases
 
 
-@njit(cache=True)
+@exact_kernel
 def propagate(
     state: NavigationState,
     rate: Array,
@@ -52,7 +52,10 @@ def propagate(
         gravity: m/s^2, down.
         noise: see `ProcessNoise`.
     """
-    half = rotation_vector_to_quat((rate - state.gyro_bias) * (0.5 * dt))
+    turn = np.empty(3)  # in the first half of the interval
+    for i in range(3):
+        turn[i] = (rate[i] - state.gyro_bias[i]) * (0.5 * dt)
+    half = rotation_vector_to_quat(turn)
     middle = quat_multiply(state.quaternion, half)
     R = quat_to_matrix(middle)
     thrust = np.zeros(3)  # specific force in the world
@@ -64,7 +67,7 @@ def propagate(
     _advance_covariance(state.covariance, R, thrust, dt, phi, noise)
 
 
-@njit(cache=True)
+@exact_inner
 def _advance_mean(
     state: NavigationState,
     quaternion: Array,
@@ -85,7 +88,7 @@ def _advance_mean(
         state.quaternion[i] = quaternion[i] / length
 
 
-@njit(cache=True)
+@exact_inner
 def _advance_covariance(
     P: Array, R: Array, thrust: Array, dt: float, phi: float, noise: ProcessNoise
 ) -> None:
@@ -105,7 +108,7 @@ def _advance_covariance(
     _add_noise(P, dt, phi, noise)
 
 
-@njit(cache=True)
+@exact_inner
 def _add_noise(P: Array, dt: float, phi: float, noise: ProcessNoise) -> None:
     for i in range(3):
         P[i, i] += noise.accelerometer * dt**3 / 3.0
@@ -117,7 +120,7 @@ def _add_noise(P: Array, dt: float, phi: float, noise: ProcessNoise) -> None:
         P[9 + i, 9 + i] += (1.0 - phi * phi) * noise.bias_variance[i]
 
 
-@njit(cache=True)
+@exact_inner
 def _transition(e: Array, R: Array, thrust: Array, dt: float, phi: float) -> None:
     """Carry one error state (20,) over the interval in place, e <- F e."""
     g0 = R[0, 0] * e[9] + R[0, 1] * e[10] + R[0, 2] * e[11]  # gyro bias in the world

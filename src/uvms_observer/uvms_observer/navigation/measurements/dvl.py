@@ -1,12 +1,13 @@
 """The Doppler velocity log: velocity of its transducer over ground."""
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
+from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
@@ -32,22 +33,26 @@ class DvlVelocity(Measurement):
         )
 
 
-@njit(cache=True)
+@exact_inner
 def velocity(state: NavigationState, lever: Array, rate: Array) -> tuple[Array, Array]:
     """Velocity that the DVL should read (3,) m/s, body axes, and H."""
     R = quat_to_matrix(state.quaternion)
-    arm = skew(lever)
-    motion = R.T @ state.velocity - arm @ (rate - state.gyro_bias)
+    arm, turned = skew(lever), R.T @ skew(state.velocity)
+    reading, swing = R.T @ state.velocity, arm @ body_rate(state, rate)
     scale = 1.0 + state.instrument_bias[0]
     H = np.zeros((3, SIZE))
-    H[:, 3:6] = scale * R.T
-    H[:, 6:9] = scale * (R.T @ skew(state.velocity))
-    H[:, 9:12] = scale * arm
-    H[:, 18] = motion
-    return scale * motion, H
+    for i in range(3):
+        motion = reading[i] - swing[i]
+        for k in range(3):
+            H[i, 3 + k] = scale * R[k, i]
+            H[i, 6 + k] = scale * turned[i, k]
+            H[i, 9 + k] = scale * arm[i, k]
+        H[i, 18] = motion
+        reading[i] = scale * motion
+    return reading, H
 
 
-@njit(cache=True)
+@exact_kernel
 def correct_velocity(
     state: NavigationState,
     measured: Array,
@@ -58,7 +63,11 @@ def correct_velocity(
     gate: float,
 ) -> float:
     """DVL: velocity (3,) m/s in body axes; the gyro's noise enters by the lever arm."""
-    expected, H = velocity(state, lever, rate)
+    residual, H = velocity(state, lever, rate)
+    subtract_from(measured, residual)
     arm = skew(lever)
-    N = variance * np.eye(3) + rate_variance * (arm @ np.ascontiguousarray(arm.T))
-    return correct(state, H, measured - expected, N, gate)
+    N = arm @ transposed(arm)
+    for i in range(3):
+        for k in range(3):
+            N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
+    return correct(state, H, residual, N, gate)

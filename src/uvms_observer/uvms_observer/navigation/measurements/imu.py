@@ -3,10 +3,10 @@
 from typing import Any
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array, ImuSample
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -14,6 +14,7 @@ from uvms_dynamics.kernels.rotations import (
     quat_to_rotation_vector,
     rotation_vector_to_quat,
 )
+from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import attitude_variance
 from uvms_observer.navigation.measurements.base import Measurement
@@ -35,7 +36,7 @@ class Gyrocompass(Measurement):
         return correct_attitude(state, sample.quaternion, self._variance, gate)
 
 
-@njit(cache=True)
+@exact_inner
 def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
     """Rotation vector (3,) rad, map_ned, from the expected to the measured attitude, and H."""
     R = quat_to_matrix(state.quaternion)
@@ -44,15 +45,20 @@ def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
     H = np.zeros((3, SIZE))
     for i in range(3):
         H[i, 6 + i] = 1.0
-    H[:, 15:18] = R
+        for k in range(3):
+            H[i, 15 + k] = R[i, k]
     return quat_to_rotation_vector(quat_multiply(measured, quat_conjugate(expected))), H
 
 
-@njit(cache=True)
+@exact_kernel
 def correct_attitude(
     state: NavigationState, measured: Array, variance: Array, gate: float
 ) -> float:
     """Gyrocompass: quaternion (4,), variances (3,) rad^2 about the body axes."""
     residual, H = attitude(state, measured)
     R = quat_to_matrix(state.quaternion)
-    return correct(state, H, residual, (R * variance) @ np.ascontiguousarray(R.T), gate)
+    scaled = np.empty((3, 3))
+    for i in range(3):
+        for k in range(3):
+            scaled[i, k] = R[i, k] * variance[k]
+    return correct(state, H, residual, scaled @ transposed(R), gate)

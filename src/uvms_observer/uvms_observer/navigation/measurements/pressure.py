@@ -1,11 +1,11 @@
 """The pressure sensor: its depth."""
 
 import numpy as np
-from numba import njit
 
 from uvms_core.signals import Array, PressureSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Pressure
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
@@ -34,7 +34,7 @@ class PressureDepth(Measurement):
         return correct_depth(state, measured, self._variance, self.lever, gate)
 
 
-@njit(cache=True)
+@exact_inner
 def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Depth that the pressure should show (1,) m, and H."""
     offset = quat_to_matrix(state.quaternion) @ lever
@@ -43,13 +43,18 @@ def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     H[0, 6] = offset[1]
     H[0, 7] = -offset[0]
     H[0, 19] = 1.0
-    return np.array([state.position[2] + offset[2] + state.instrument_bias[1]]), H
+    reading = np.empty(1)
+    reading[0] = state.position[2] + offset[2] + state.instrument_bias[1]
+    return reading, H
 
 
-@njit(cache=True)
+@exact_kernel
 def correct_depth(
     state: NavigationState, measured: float, variance: float, lever: Array, gate: float
 ) -> float:
     """Pressure sensor: its depth in m."""
-    expected, H = depth(state, lever)
-    return correct(state, H, measured - expected, variance * np.eye(1), gate)
+    residual, H = depth(state, lever)
+    residual[0] = measured - residual[0]
+    N = np.empty((1, 1))
+    N[0, 0] = variance
+    return correct(state, H, residual, N, gate)

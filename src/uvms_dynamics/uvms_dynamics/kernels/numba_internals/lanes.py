@@ -19,7 +19,7 @@ from numba.core.typeconv import Conversion
 from numba.core.typing.templates import AbstractTemplate, ConcreteTemplate, infer_global, signature
 from numba.extending import models, register_model
 
-from uvms_dynamics.kernels.jit import intrinsic
+from uvms_dynamics.kernels.numba_internals.parts import intrinsic
 
 LANES = 8
 _VECTOR = ir.VectorType(ir.DoubleType(), LANES)

@@ -10,8 +10,8 @@ from llvmlite import ir
 from numba import types
 from numba.core import cgutils
 
-from uvms_dynamics.kernels.jit import intrinsic
-from uvms_dynamics.kernels.lanes import LanesType, is_table, lanes
+from uvms_dynamics.kernels.numba_internals.lanes import LanesType, is_table, lanes
+from uvms_dynamics.kernels.numba_internals.parts import intrinsic
 
 _MANTISSA_BITS, _EXPONENT_BIAS = 52, 1023.0
 ROUND = 1.5 * 2.0**_MANTISSA_BITS

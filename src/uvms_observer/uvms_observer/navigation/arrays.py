@@ -1,0 +1,36 @@
+"""Small steps that the filter's kernels share.
+
+They are loops: numba takes seconds to compile what numpy's slices, broadcasts and copies may raise.
+"""
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import exact_inner
+from uvms_observer.navigation.state import NavigationState
+
+
+@exact_inner
+def transposed(matrix: Array) -> Array:
+    """The transpose, contiguous in memory."""
+    out = np.empty((matrix.shape[1], matrix.shape[0]))
+    for i in range(matrix.shape[0]):
+        for j in range(matrix.shape[1]):
+            out[j, i] = matrix[i, j]
+    return out
+
+
+@exact_inner
+def body_rate(state: NavigationState, rate: Array) -> Array:
+    """The gyro's rate (3,) without its estimated bias."""
+    omega = np.empty(3)
+    for i in range(3):
+        omega[i] = rate[i] - state.gyro_bias[i]
+    return omega
+
+
+@exact_inner
+def subtract_from(measured: Array, expected: Array) -> None:
+    """The expected reading (3,) becomes the residual."""
+    for i in range(3):
+        expected[i] = measured[i] - expected[i]
