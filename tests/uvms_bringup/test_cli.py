@@ -71,7 +71,8 @@ PERIOD = "is not a multiple of"
         (
             ["--set", "control.obsrver=false"],
             f"{HOVER}control.obsrver: Extra inputs are not permitted; known names here:"
-            " arm, compensate_vehicle_motion, compensation, enabled, observer, vehicle",
+            " arm, compensate_vehicle_motion, compensation, enabled, law, observer, parameters,"
+            " vehicle",
         ),
         (
             ["--set", "plant.initial_joints_deg=[0]"],
@@ -299,11 +300,11 @@ def installed(tmp_path, monkeypatch):
         for name, text in modules.items():
             (place / f"{name}.py").write_text(text)
         monkeypatch.syspath_prepend(str(place))
-        registry._entries.cache_clear()
+        registry.refresh()
 
     yield install
     monkeypatch.undo()
-    registry._entries.cache_clear()
+    registry.refresh()
 
 
 def help_text(capsys, *arguments):
