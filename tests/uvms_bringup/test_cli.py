@@ -300,11 +300,11 @@ def installed(tmp_path, monkeypatch):
         for name, text in modules.items():
             (place / f"{name}.py").write_text(text)
         monkeypatch.syspath_prepend(str(place))
-        registry._entries.cache_clear()
+        registry.refresh()
 
     yield install
     monkeypatch.undo()
-    registry._entries.cache_clear()
+    registry.refresh()
 
 
 def help_text(capsys, *arguments):
