@@ -20,6 +20,7 @@ setup(
         (f"share/{PACKAGE}/launch", sorted(glob("launch/*.*"))),
     ],
     install_requires=[
+        "annotated-types>=0.5",
         "numpy>=1.26",
         "pydantic>=2.5",
         "rich>=13",

@@ -26,8 +26,8 @@ def refusal(**overrides):
     """Error text of the reference vehicle with `a__b` for `a.b`, without the file's name."""
     with pytest.raises(VehicleFileError) as fault:
         load_vehicle(overrides={path.replace("__", "."): v for path, v in overrides.items()})
-    told = re.escape(str(reference_file()))
-    return re.sub(rf"^{told}(?: with [^:]*)?: ", "", str(fault.value), flags=re.MULTILINE)
+    file = re.escape(str(reference_file()))
+    return re.sub(rf"^{file}(?: with [^:]*)?: ", "", str(fault.value), flags=re.MULTILINE)
 
 
 def test_counts_and_names():
