@@ -93,16 +93,16 @@ def test_own_controller_takes_the_place_of_ours(output):
     assert ours[0] < 5.0 < own[0] < 25.0
 
 
-def test_vehicle_file_with_its_changes_becomes_a_urdf(said):
-    lines = said(FOLDER / "core_vehicle.py")
+def test_vehicle_file_with_its_changes_becomes_a_urdf(output):
+    lines = output(FOLDER / "core_vehicle.py")
     masses = {line.split()[0]: numbers(line)[0] for line in lines[3:8]}
     assert masses["hull"] == 190.0
     assert masses["gripper"] == 0.8
     assert lines[-1] == "of these move: swing, shoulder, elbow, wrist"
 
 
-def test_own_log_is_summarised_and_lacks_what_was_not_written(said):
-    lines = said(FOLDER / "analysis_summary.py")
+def test_own_log_is_summarised_and_lacks_what_was_not_written(output):
+    lines = output(FOLDER / "analysis_summary.py")
     start, end = numbers(lines[1].split(":")[1])
     assert start == 10.0
     assert 12.0 < end < 15.0  # of a vehicle 8.5 kg too heavy, after 10 s

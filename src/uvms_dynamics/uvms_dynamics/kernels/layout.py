@@ -78,11 +78,12 @@ FIXTURES = {
     "TOOL_POSITION": 3,
     "ADDED_MASS": 21,  # of the hull alone, about the body origin, body axes
     "TETHER_DEPTH": 1,  # reference depth; only the simulation reads the tether's
+    "TETHER_REACH": 1,  # greatest distance from it that counts
     "TETHER_WEIGHT": 1,  # per metre of depth
     "TETHER_MOMENT": 3,  # per metre of depth
 }
 TOOL_ROTATION, TOOL_POSITION, ADDED_MASS, *_tether = _columns(FIXTURES)
-TETHER_DEPTH, TETHER_WEIGHT, TETHER_MOMENT = _tether
+TETHER_DEPTH, TETHER_REACH, TETHER_WEIGHT, TETHER_MOMENT = _tether
 
 # Drag cylinders, in groups of eight: each of these numbers of all eight, then the next
 CYLINDER = {

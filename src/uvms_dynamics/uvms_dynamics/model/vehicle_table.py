@@ -145,6 +145,7 @@ def _set_fixtures(row: Array, vehicle: Vehicle, tool: Pose) -> None:
     _put(row, layout.ADDED_MASS, _packed(np.array(vehicle.hull.added_mass)))
     if (tether := vehicle.tether) is not None:
         _put(row, layout.TETHER_DEPTH, [tether.reference_depth_m])
+        _put(row, layout.TETHER_REACH, [tether.linear_within_m])
         _put(row, layout.TETHER_WEIGHT, [tether.weight_per_m_n])
         _put(row, layout.TETHER_MOMENT, tether.moment_per_m_nm)
 

@@ -4,7 +4,8 @@ Only the simulation knows of it. For observer, controller and planner it is a di
 """
 
 from uvms_dynamics.kernels.jit import inner
-from uvms_dynamics.kernels.layout import TETHER_DEPTH, TETHER_MOMENT, TETHER_WEIGHT
+from uvms_dynamics.kernels.layout import TETHER_DEPTH, TETHER_MOMENT, TETHER_REACH, TETHER_WEIGHT
+from uvms_dynamics.kernels.numba_internals.primitives import maximum, minimum
 from uvms_dynamics.kernels.spatial import cross, load3, pair
 
 
@@ -12,9 +13,10 @@ from uvms_dynamics.kernels.spatial import cross, load3, pair
 def tether_load(model, n, depth):
     """Weight (N, down) and its first moment (3, N m, body frame) at a depth, m: four numbers.
 
-    w (d - d0) and m (d - d0) of `uvms_core.vehicle.Tether`; n is the number of joints.
+    w (d - d0) and m (d - d0), |d - d0| cut at its reach, of `uvms_core.vehicle.Tether`; n is the number of joints.
     """
-    below = depth - model[n + 1, TETHER_DEPTH]
+    reach = model[n + 1, TETHER_REACH]
+    below = minimum(maximum(depth - model[n + 1, TETHER_DEPTH], -reach), reach)
     moment = load3(model, n + 1, TETHER_MOMENT)
     weight = model[n + 1, TETHER_WEIGHT]
     return weight * below, moment[0] * below, moment[1] * below, moment[2] * below
