@@ -13,7 +13,8 @@ from uvms_dynamics.kernels.spatial import cross, load3, pair
 def tether_load(model, n, depth):
     """Weight (N, down) and its first moment (3, N m, body frame) at a depth, m: four numbers.
 
-    w (d - d0) and m (d - d0), |d - d0| cut at its reach, of `uvms_core.vehicle.Tether`; n is the number of joints.
+    w (d - d0) and m (d - d0) of `uvms_core.vehicle.Tether`, with |d - d0| cut at its reach; n is the
+    number of joints.
     """
     reach = model[n + 1, TETHER_REACH]
     below = minimum(maximum(depth - model[n + 1, TETHER_DEPTH], -reach), reach)
