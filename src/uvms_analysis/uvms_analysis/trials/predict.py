@@ -21,7 +21,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model, restoring_wrench
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.simulation.prescribed import Load, PrescribedJoints, float_freely
-from uvms_dynamics.simulation.tether import tether_load
+from uvms_dynamics.simulation.tether import tether_load_at
 
 _LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 _ON_ITS_SIDE = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])  # rolled by 90 degrees
@@ -120,7 +120,7 @@ def first_moment(model: Model, q: Array) -> Array:
 
 def _loaded(model: Model, load: Load, depth: float) -> Array:
     """First moment (3,) of the load and of the vehicle's tether."""
-    return np.asarray(load.moment + np.array(tether_load(model, len(JOINTS), depth)[1:]))
+    return np.asarray(load.moment + np.array(tether_load_at(model, len(JOINTS), depth)[1:]))
 
 
 def _direction(moment: Array) -> Array:

@@ -12,7 +12,7 @@ from uvms_dynamics.kernels.layout import JOINTS as JOINTS_COUNT
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_dynamics.model.vehicle_table import Model
 from uvms_dynamics.simulation.integrator import DEPTH, JOINTS, QUATERNION, VELOCITY
-from uvms_dynamics.simulation.tether import load_wrench, tether_load
+from uvms_dynamics.simulation.tether import tether_wrench
 
 
 @dataclass(frozen=True)
@@ -64,7 +64,7 @@ def true_disturbance(
 
 def _tether_wrench(model: Model, state: Array, n: int) -> Array:
     down = quat_to_matrix(state[QUATERNION:VELOCITY])[2]
-    return np.array(load_wrench(tether_load(model, n, state[DEPTH]), tuple(down)))
+    return tether_wrench(model, n, state[DEPTH], down)
 
 
 def _current_on_hull(
