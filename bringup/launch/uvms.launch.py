@@ -58,9 +58,13 @@ def nodes(context):
 
 
 def parameter_files(node, place):
-    """The files with a node's parameters, if any."""
-    files = [Path(place) / f"{node}.yaml"] if Path(place).is_dir() else [Path(place)]
-    return [str(file) for file in files if place and file.exists()]
+    """The files with a node's parameters: one for all, or its own in a folder, which may lack."""
+    if not place:
+        return []
+    if not Path(place).exists():
+        raise FileNotFoundError(f"parameters: {place}: no such file or folder")
+    file = Path(place) / f"{node}.yaml" if Path(place).is_dir() else Path(place)
+    return [str(file)] if file.exists() else []
 
 
 def own_values(node, given):

@@ -1,12 +1,14 @@
 """Which node fills which role of the graph: ours, the user's, or one that the user starts."""
 
+import re
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 
 from uvms_bringup.errors import RunError
 from uvms_core import registry, topics
 
-OWNS_TIME = "plant"
+_PART = re.compile(r"[A-Za-z_][A-Za-z0-9_]*")
+"""What ROS takes for a part of a namespace."""
 
 
 @dataclass(frozen=True)
@@ -45,8 +47,10 @@ class Cast:
                 raise RunError(f"--node: {role} is given twice: {chosen[role]} and {node}")
             chosen[role] = registry.check(registry.NODES, node)
         absent = frozenset(_check_role("--without", role) for role in without)
-        if OWNS_TIME in absent:
-            raise RunError(f"--without {OWNS_TIME}: it owns time; replace it with --node instead")
+        if topics.PLANT in absent:
+            raise RunError(
+                f"--without {topics.PLANT}: it owns time; replace it with --node instead"
+            )
         if both := absent & chosen.keys():
             raise RunError(f"{', '.join(sorted(both))}: given to both --node and --without")
         return cls(chosen, absent, _namespace(namespace))
@@ -69,7 +73,7 @@ def _check_role(option: str, role: str) -> str:
 
 def _namespace(text: str) -> str:
     name = text.strip("/")
-    if name and not all(part.isidentifier() for part in name.split("/")):
+    if name and not all(_PART.fullmatch(part) for part in name.split("/")):
         raise RunError(
             f"--namespace {text!r}: use letters, digits and _, not beginning with a digit,"
             " with / between its parts"

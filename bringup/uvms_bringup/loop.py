@@ -82,11 +82,11 @@ def make_parts(scenario: Scenario, vehicle: Vehicle) -> dict[str, Part]:
     """The parts of a scenario's loop besides the plant, by role."""
     period = to_nanoseconds(scenario.plant.control_period_s)
     return {
-        "navigation": NavigationPart(vehicle, scenario.navigation, period),
-        "motion_planner": PlannerPart(vehicle, scenario.planner, scenario.seed),
-        "disturbance_observer": ObserverPart(vehicle, scenario.observer, period),
-        "controller": ControllerPart(vehicle, scenario.control),
-        "thrust_allocator": AllocatorPart(vehicle, scenario.allocation),
+        topics.NAVIGATION: NavigationPart(vehicle, scenario.navigation, period),
+        topics.MOTION_PLANNER: PlannerPart(vehicle, scenario.planner, scenario.seed),
+        topics.DISTURBANCE_OBSERVER: ObserverPart(vehicle, scenario.observer, period),
+        topics.CONTROLLER: ControllerPart(vehicle, scenario.control),
+        topics.THRUST_ALLOCATOR: AllocatorPart(vehicle, scenario.allocation),
     }
 
 
@@ -102,7 +102,7 @@ class Loop:
     @property
     def planner(self) -> MotionPlanner:
         """Takes goals."""
-        return self.parts["motion_planner"].planner  # type: ignore[attr-defined]
+        return self.parts[topics.MOTION_PLANNER].planner  # type: ignore[attr-defined]
 
     def tick(self) -> LoopTick:
         """Everything that the graph computes at the plant's present stamp."""
@@ -116,7 +116,7 @@ class Loop:
             ended = time.perf_counter()
             step_ms[role], began = 1e3 * (ended - began), ended
             outputs += own
-        plan = self.parts["motion_planner"].plan if "motion_planner" in step_ms else None  # type: ignore[attr-defined]
+        plan = self.parts[topics.MOTION_PLANNER].plan if topics.MOTION_PLANNER in step_ms else None  # type: ignore[attr-defined]
         return LoopTick(stamp, sensors, truth, outputs, step_ms, plan)
 
     def advance(self, tick: LoopTick) -> None:

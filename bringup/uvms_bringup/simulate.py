@@ -11,7 +11,6 @@ from uvms_core.diagnostics import Status
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle
 
-PLANNER = "motion_planner"
 Progress = Callable[[int, str], None]
 
 
@@ -68,5 +67,8 @@ def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
         log.write(topic, signal)
     log.write_plain(topics.TF, frames.message(tick.odometry, tick.sensors.joints), tick.stamp)
     if tick.plan is not None:
-        values = {"step_ms": tick.step_ms[PLANNER]} | tick.plan.diagnostics()
-        log.write(topics.DIAGNOSTICS, Status(tick.stamp, PLANNER, diagnostics.OK, "ok", values))
+        values = {"step_ms": tick.step_ms[topics.MOTION_PLANNER]} | tick.plan.diagnostics()
+        log.write(
+            topics.DIAGNOSTICS,
+            Status(tick.stamp, topics.MOTION_PLANNER, diagnostics.OK, "ok", values),
+        )

@@ -98,7 +98,8 @@ def test_a_run_waits_for_the_node_that_is_left_to_the_user_and_names_it(mine, tm
     finally:
         run.kill()
     assert pushed(Outcome(run.returncode, out, "", tmp_path / "run"))
-    assert "controller is left to you; it\n  reads  /clock [rosgraph_msgs/msg/Clock]" in out
+    assert "controller is left to you; it\n  reads  /clock [rosgraph_msgs/msg/Clock]\n" in out
+    assert "\n  writes /wrench_command [geometry_msgs/msg/WrenchStamped]\n" in out
     waited = (tmp_path / "err").read_text()
     assert (
         "controller: nobody publishes 'wrench_command' (geometry_msgs/msg/WrenchStamped)" in waited

@@ -42,7 +42,7 @@ def test_an_unknown_node_is_refused_with_the_choices():
         Cast.parse(["controller=mine"])
 
 
-@pytest.mark.parametrize("name", ["1st", "a b", "a//b", "a/-b"])
+@pytest.mark.parametrize("name", ["1st", "a b", "a//b", "a/-b", "aüv"])
 def test_a_namespace_that_ros_refuses_is_refused_here(name):
     with pytest.raises(RunError, match="--namespace"):
         Cast.parse(namespace=name)

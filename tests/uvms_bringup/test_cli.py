@@ -92,7 +92,7 @@ PERIOD = "is not a multiple of"
         ),
         (
             ["--set", "scenario=../../x"],
-            f"{HOVER}scenario: Value error, it becomes part of a folder's name: start with a"
+            f"{HOVER}scenario: it becomes part of a folder's name: start with a"
             " letter or digit, then use letters, digits, spaces and the signs _ . + -"
             " (got '../../x')",
         ),

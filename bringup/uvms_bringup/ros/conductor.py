@@ -186,8 +186,8 @@ class Conductor(Node):
         # An action's rejection carries no text; the planner gives its reason on /diagnostics.
         deadline = time.monotonic() + END_PATIENCE_S
         while time.monotonic() < deadline:
-            if "motion_planner" in self._faults:
-                return self._faults["motion_planner"]
+            if topics.MOTION_PLANNER in self._faults:
+                return self._faults[topics.MOTION_PLANNER]
             spinner.spin_once(0.05)
         return ""
 

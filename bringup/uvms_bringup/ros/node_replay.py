@@ -65,7 +65,7 @@ class NodeReplay:
         vehicle = folder / "vehicle.yaml"
         vehicle.write_text(self.run.text("vehicle.yaml"), encoding="utf-8")
         parameters = node_parameters(self.scenario, vehicle, Pace())[self.node]
-        if self.node == "plant":
+        if self.node == topics.PLANT:
             parameters["start_paused"] = False
         file = write_parameter_file(folder / f"{self.node}.yaml", self.node, parameters)
         return node_command(self.node, file, self.run.namespace)
@@ -85,7 +85,7 @@ class NodeReplay:
                     f"timed out after {START_PATIENCE_S:.0f} s: {self.node}: {self._player.lack}"
                 )
             self._spinner.spin_for(Future(), 0.02)
-        if self.node == "plant":
+        if self.node == topics.PLANT:
             self._start_plant()
 
     def _start_plant(self) -> None:
@@ -117,7 +117,7 @@ class NodeReplay:
         return unanswered
 
     def _one(self, tick: TickRecord, patience: float) -> bool:
-        if self.node == "plant":  # it publishes first, then steps with the commands
+        if self.node == topics.PLANT:  # it publishes first, then steps with the commands
             answered = self._await(self._player.answer_to(tick), patience)
             self._player.play(tick)
             return answered
@@ -147,7 +147,7 @@ class NodeReplay:
     def _send_goal(self) -> None:
         """The planner's goal follows its first tick, as in every run."""
         goal = self.scenario.goal.build(self._vehicle, self.scenario.plant)
-        if self.node != "motion_planner" or goal is None:
+        if self.node != topics.MOTION_PLANNER or goal is None:
             return
         action = _action_of(goal)
         cls: Any = action_class(action)

@@ -22,7 +22,7 @@ def node_parameters(
         "control_period_s": scenario.plant.control_period_s,
     }
     own = {node: common | _own(scenario, node) for node in topics.NODES}
-    own["plant"] |= {
+    own[topics.PLANT] |= {
         "realtime_factor": pace.factor,
         "duration_s": scenario.duration_s,
         "auto_start": False,
@@ -46,10 +46,10 @@ def _own(scenario: Scenario, node: str) -> dict[str, Any]:
 def config_of(scenario: Scenario, node: str) -> Config:
     """The part of a scenario that configures one node."""
     return {
-        "plant": scenario.plant,
-        "navigation": scenario.navigation,
-        "disturbance_observer": scenario.observer,
-        "motion_planner": scenario.planner,
-        "controller": scenario.control,
-        "thrust_allocator": scenario.allocation,
+        topics.PLANT: scenario.plant,
+        topics.NAVIGATION: scenario.navigation,
+        topics.DISTURBANCE_OBSERVER: scenario.observer,
+        topics.MOTION_PLANNER: scenario.planner,
+        topics.CONTROLLER: scenario.control,
+        topics.THRUST_ALLOCATOR: scenario.allocation,
     }[node]

@@ -97,10 +97,10 @@ def foreign_roles(cast: Cast) -> frozenset[str]:
 
 
 def _print_contracts(cast: Cast, vehicle: Vehicle) -> None:
+    graph = topics.nodes(vehicle)
     for role in sorted(cast.absent):
-        print(
-            f"{role} is left to you; it\n{topics.contract(role, topics.nodes(vehicle))}", flush=True
-        )
+        interface = topics.contract(role, graph, cast.namespace)
+        print(f"{role} is left to you; it\n{interface}", flush=True)
 
 
 def _follow(

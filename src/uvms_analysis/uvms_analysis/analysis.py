@@ -142,7 +142,7 @@ class Analysis:
     @cached_property
     def path_start_s(self) -> float:
         """When the path begins: as the planner reports, else where its references fit it best."""
-        for status in self.log.statuses("motion_planner"):
+        for status in self.log.statuses(topics.MOTION_PLANNER):
             if np.isfinite(elapsed := status.number(ELAPSED)):
                 return round(to_seconds(status.stamp) - elapsed, 9)
         return self._fitted_start()
@@ -215,11 +215,11 @@ class Analysis:
     @cached_property
     def planner_step_ms(self) -> Array:
         """Computing time of the planner's steps."""
-        values = [status.number("step_ms") for status in self.log.statuses("motion_planner")]
+        values = [status.number("step_ms") for status in self.log.statuses(topics.MOTION_PLANNER)]
         return np.array([value for value in values if np.isfinite(value)])
 
     @cached_property
     def lockstep_timeouts(self) -> int:
         """Number of times the plant continued without a command."""
-        values = [status.number("lockstep_timeouts") for status in self.log.statuses("plant")]
+        values = [status.number("lockstep_timeouts") for status in self.log.statuses(topics.PLANT)]
         return int(max((value for value in values if np.isfinite(value)), default=0))

@@ -16,7 +16,7 @@ class ControllerPart(Part):
     """Estimated state, reference and disturbance in; wrench and joint command out."""
 
     trigger = topics.ODOMETRY
-    outputs = topics.NODES["controller"].outputs
+    outputs = topics.NODES[topics.CONTROLLER].outputs
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig) -> None:
         self.law: ControlLaw = create(config, vehicle)
@@ -43,7 +43,7 @@ class AllocatorPart(Part):
     """Commanded wrench in; thrusts and the wrench that they achieve out."""
 
     trigger = topics.WRENCH_COMMAND
-    outputs = topics.NODES["thrust_allocator"].outputs
+    outputs = topics.NODES[topics.THRUST_ALLOCATOR].outputs
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig) -> None:
         self.method: AllocationMethod = create(config, vehicle)

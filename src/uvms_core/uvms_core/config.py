@@ -43,7 +43,7 @@ def _follows_from_others(item, places: list[tuple]) -> bool:
 
 def _explain_one(item, what: str, model: type[BaseModel]) -> str:
     path = ".".join(str(part) for part in item["loc"]) or "(top)"
-    line = f"{what}: {path}: {item['msg']}"
+    line = f"{what}: {path}: {item['msg'].removeprefix('Value error, ')}"
     if item["type"] == "extra_forbidden":
         return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
     if item["type"] == "missing":

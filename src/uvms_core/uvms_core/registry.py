@@ -102,11 +102,21 @@ def _is_path(name: str) -> bool:
 
 @cache
 def _entries(group: str) -> dict[str, EntryPoint]:
-    """Entry points of a group by name; of several of one name the first on the path counts."""
+    """Entry points of a group by name.
+
+    Raises:
+        PluginError: two packages give one name to different objects; names both.
+    """
     found: dict[str, EntryPoint] = {}
     for entry in _all_entries():
-        if entry.group == group:
-            found.setdefault(entry.name, entry)
+        if entry.group != group:
+            continue
+        known = found.setdefault(entry.name, entry)
+        if known.value != entry.value:
+            raise PluginError(
+                f"entry point {entry.name!r} of the group {group} is given twice, as {known.value}"
+                f" and {entry.value}: rename one, or uninstall its package"
+            )
     return found
 
 

@@ -66,9 +66,7 @@ class Topic:
 
     def resolve(self, namespace: str = "") -> str:
         """The full name under a namespace ("" is the root)."""
-        if self.is_global:
-            return self.name
-        return "/" + "/".join(part for part in (namespace.strip("/"), self.name) if part)
+        return self.name if self.is_global else _under(namespace, self.name)
 
 
 @dataclass(frozen=True)
@@ -79,6 +77,10 @@ class Action:
     type: str
     goal: Kind
 
+    def resolve(self, namespace: str = "") -> str:
+        """The full name under a namespace ("" is the root)."""
+        return _under(namespace, self.name)
+
 
 @dataclass(frozen=True)
 class NodeTopics:
@@ -87,3 +89,7 @@ class NodeTopics:
     inputs: tuple[Topic, ...]
     outputs: tuple[Topic, ...]
     actions: tuple[Action, ...] = ()  # that it serves
+
+
+def _under(namespace: str, name: str) -> str:
+    return "/" + "/".join(part for part in (namespace.strip("/"), name) if part)

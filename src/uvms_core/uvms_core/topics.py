@@ -30,8 +30,14 @@ __all__ = [
     "ALL",
     "BODY_FRAME",
     "BY_NAME",
+    "CONTROLLER",
+    "DISTURBANCE_OBSERVER",
     "LATCHED",
+    "MOTION_PLANNER",
+    "NAVIGATION",
     "NODES",
+    "PLANT",
+    "THRUST_ALLOCATOR",
     "WORLD_FRAME",
     "Action",
     "Kind",
@@ -43,6 +49,14 @@ __all__ = [
     "of",
     "readers",
 ]
+
+PLANT = "plant"
+NAVIGATION = "navigation"
+DISTURBANCE_OBSERVER = "disturbance_observer"
+MOTION_PLANNER = "motion_planner"
+CONTROLLER = "controller"
+THRUST_ALLOCATOR = "thrust_allocator"
+"""Names of the nodes, which are the roles of the graph."""
 
 CLOCK = Topic("/clock", "rosgraph_msgs/msg/Clock", int)
 IMU, DVL, PRESSURE, GPS = (sensor.topic for sensor in sensors.BUILT_IN)
@@ -145,18 +159,18 @@ def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:
     fused = tuple(sensor.topic for sensor in kinds if sensor.navigation)
     truth = (TRUE_ODOMETRY, TRUE_JOINT_STATES, TRUE_DISTURBANCE)
     return {
-        "plant": NodeTopics(
+        PLANT: NodeTopics(
             (THRUSTER_COMMAND, JOINT_COMMAND), (CLOCK, *measured, JOINT_STATES, *truth)
         ),
-        "navigation": NodeTopics((CLOCK, *fused), (ODOMETRY,)),
-        "disturbance_observer": NodeTopics(
+        NAVIGATION: NodeTopics((CLOCK, *fused), (ODOMETRY,)),
+        DISTURBANCE_OBSERVER: NodeTopics(
             (CLOCK, ODOMETRY, JOINT_STATES, WRENCH_ACHIEVED), (DISTURBANCE, DISTURBANCE_BUDGET)
         ),
-        "motion_planner": NodeTopics((CLOCK, ODOMETRY, JOINT_STATES), (REFERENCE,), ACTIONS),
-        "controller": NodeTopics(
+        MOTION_PLANNER: NodeTopics((CLOCK, ODOMETRY, JOINT_STATES), (REFERENCE,), ACTIONS),
+        CONTROLLER: NodeTopics(
             (CLOCK, ODOMETRY, JOINT_STATES, REFERENCE, DISTURBANCE), (WRENCH_COMMAND, JOINT_COMMAND)
         ),
-        "thrust_allocator": NodeTopics(
+        THRUST_ALLOCATOR: NodeTopics(
             (CLOCK, WRENCH_COMMAND), (THRUSTER_COMMAND, WRENCH_ACHIEVED, ALLOCATION)
         ),
     }
@@ -175,10 +189,10 @@ def readers(topic: Topic, graph: Mapping[str, NodeTopics] = NODES) -> set[str]:
     return {name for name, own in graph.items() if topic in own.inputs}
 
 
-def contract(name: str, graph: Mapping[str, NodeTopics] = NODES) -> str:
-    """Interface of the node of a name, as text for whoever replaces it."""
+def contract(name: str, graph: Mapping[str, NodeTopics] = NODES, namespace: str = "") -> str:
+    """Interface of the node of a name under a namespace, as text for whoever replaces it."""
     own = graph[name]
     rows: list[tuple[str, Topic | Action]] = [("reads", topic) for topic in own.inputs]
     rows += [("writes", topic) for topic in own.outputs]
     rows += [("serves", action) for action in own.actions]
-    return "\n".join(f"  {verb:6} {each.name} [{each.type}]" for verb, each in rows)
+    return "\n".join(f"  {verb:6} {each.resolve(namespace)} [{each.type}]" for verb, each in rows)

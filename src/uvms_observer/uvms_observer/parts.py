@@ -26,7 +26,7 @@ class NavigationPart(Part):
     """
 
     trigger = INERTIAL.topic
-    outputs = topics.NODES["navigation"].outputs
+    outputs = topics.NODES[topics.NAVIGATION].outputs
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig, period: int) -> None:
         self.filter: NavigationEstimator = create(config, vehicle)
@@ -64,7 +64,7 @@ class ObserverPart(Part):
     """Estimated state and achieved wrench in; disturbance and its budget out, eq. (21)."""
 
     trigger = topics.ODOMETRY
-    outputs = topics.NODES["disturbance_observer"].outputs
+    outputs = topics.NODES[topics.DISTURBANCE_OBSERVER].outputs
 
     def __init__(self, vehicle: Vehicle, config: ObserverConfig, period: int) -> None:
         self.law: ObserverLaw = create(config, vehicle)

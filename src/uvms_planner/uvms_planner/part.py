@@ -19,7 +19,7 @@ class PlannerPart(Part):
     """
 
     trigger = topics.ODOMETRY
-    outputs = topics.NODES["motion_planner"].outputs
+    outputs = topics.NODES[topics.MOTION_PLANNER].outputs
     in_loop = False
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:

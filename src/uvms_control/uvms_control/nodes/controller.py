@@ -2,6 +2,7 @@
 
 from uvms_control import ControlConfig
 from uvms_control.parts import ControllerPart
+from uvms_core import topics
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
 
@@ -9,7 +10,7 @@ from uvms_core.ros.part_node import PartNode
 class ControllerNode(PartNode):
     """odometry, joint_states, reference and disturbance in; wrench and joint command out."""
 
-    role = "controller"
+    role = topics.CONTROLLER
     configurations = (ControlConfig,)
 
     def make_part(self) -> ControllerPart:

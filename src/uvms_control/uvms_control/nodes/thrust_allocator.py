@@ -2,6 +2,7 @@
 
 from uvms_control import AllocatorConfig
 from uvms_control.parts import AllocatorPart
+from uvms_core import topics
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
 
@@ -9,7 +10,7 @@ from uvms_core.ros.part_node import PartNode
 class ThrustAllocatorNode(PartNode):
     """wrench_command in; thruster_command, wrench_achieved and allocation out."""
 
-    role = "thrust_allocator"
+    role = topics.THRUST_ALLOCATOR
     configurations = (AllocatorConfig,)
 
     def make_part(self) -> AllocatorPart:

@@ -25,6 +25,8 @@ def _replaced(node: Any, parts: list[str], value: Any, path: str, done: str) -> 
     if key is None:
         where = done or "the vehicle file"
         choices = f"choose from {', '.join(keys)}" if keys else "it has no fields"
+        if node is None:
+            choices = f"the file does not have this section; set {done} as a whole"
         raise VehicleFileError(f"override {path}: {where} has no {parts[0]!r}; {choices}")
     inner = f"{done}.{parts[0]}" if done else parts[0]
     copy = dict(node) if isinstance(node, Mapping) else list(node)

@@ -57,7 +57,7 @@ class PlantNode(UvmsNode):
     Services: `start` (begin, where `auto_start` is false) and `pause` (hold simulated time).
     """
 
-    role = "plant"
+    role = topics.PLANT
     configurations = (
         PaceConfig,
         PlantConfig,

@@ -1,5 +1,6 @@
 """Node `disturbance_observer`: what acts on the vehicle besides its thrusters, eq. (21)."""
 
+from uvms_core import topics
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
 from uvms_observer import ObserverConfig
@@ -9,7 +10,7 @@ from uvms_observer.parts import ObserverPart
 class DisturbanceObserverNode(PartNode):
     """odometry, joint_states and wrench_achieved in; disturbance and disturbance/budget out."""
 
-    role = "disturbance_observer"
+    role = topics.DISTURBANCE_OBSERVER
     configurations = (ObserverConfig,)
 
     def make_part(self) -> ObserverPart:

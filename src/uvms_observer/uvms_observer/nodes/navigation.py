@@ -1,5 +1,6 @@
 """Node `navigation`: the extended Kalman filter on the sensors' topics."""
 
+from uvms_core import topics
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
 from uvms_observer import NavigationConfig
@@ -9,7 +10,7 @@ from uvms_observer.parts import NavigationPart
 class NavigationNode(PartNode):
     """sensors/* in, odometry out, once a control tick."""
 
-    role = "navigation"
+    role = topics.NAVIGATION
     configurations = (NavigationConfig,)
 
     def make_part(self) -> NavigationPart:

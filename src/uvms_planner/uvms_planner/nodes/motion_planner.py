@@ -26,7 +26,7 @@ class MotionPlannerNode(PartNode):
     that cannot be followed is rejected; the reason is logged and stands on /diagnostics.
     """
 
-    role = "motion_planner"
+    role = topics.MOTION_PLANNER
     configurations = (PlannerConfig,)
     part: PlannerPart
 
