@@ -32,7 +32,7 @@ def running(folder, duration_s: float, goal) -> Iterator[tuple[Spinner, Conducto
         return Conductor(lambda *message: None, lambda: None, vehicle.joint_names)
 
     with graph_of(lead, *makers) as (spinner, (conductor, *_)):
-        conductor.lead(spinner, goal)
+        conductor.conduct(spinner, goal)
         yield spinner, conductor
 
 
