@@ -119,7 +119,7 @@ def test_frame_changes_as_x_transposed_m_x(word):
 
 
 def test_energy_does_not_depend_on_the_frame():
-    """X by what it is for: the same motion, told in both frames, has the same energy."""
+    """X by what it is for: the same motion, written in both frames, has the same energy."""
     M = np.diag([1.0, 2.0, 3.0, 4.0, 5.0, 6.0]) + 0.1
     position, rotation = TURNED
     v, w = np.array([0.3, -0.2, 0.5]), np.array([1.0, 0.4, -0.7])

@@ -1,4 +1,8 @@
-"""Writes a run to MCAP in the manner of rosbag2, safe against being killed."""
+"""Writes a run to MCAP in the manner of rosbag2, safe against being killed.
+
+The writer is the mcap package's; mcap_ros2's would encode each message anew, many times slower than
+`uvms_core.cdr` does, and both leave what they buffer to be lost with the process.
+"""
 
 import os
 from collections.abc import Mapping

@@ -8,6 +8,10 @@ once the minimum is reached frees the held variable whose multiplier has the mos
 (Nocedal and Wright, Numerical Optimization, section 16.5). H is positive definite and bounds are
 linearly independent, so that a freed variable always moves and the objective strictly falls: no
 set of held variables comes back, and the method ends after finitely many steps.
+
+Own code because compiled kernels can call it, and for its speed: the whole allocation of a wrench
+from Python takes about as long as the solution alone by daqp (ratio 0.95), 0.67 of quadprog's, 0.09
+of scipy's bvls (`make bench ARGS=allocation`).
 """
 
 import numpy as np

@@ -23,7 +23,7 @@ from uvms_dynamics.kernels.motion import (
     set_angle,
 )
 from uvms_dynamics.kernels.numba_internals.primitives import sqrt
-from uvms_dynamics.kernels.spatial import load6, plus, six, store6
+from uvms_dynamics.kernels.spatial import load6, plus, spatial_at, store_spatial
 from uvms_dynamics.model.vehicle_table import Model, build_model
 from uvms_dynamics.simulation.thrusters import Thrusters, build_thrusters, thrust_rate
 
@@ -75,7 +75,7 @@ def make_state(
     """State (13 + 2n + m,) with joint angles q (n,), rad, and m thrusters that are off.
 
     position (3,) m and unit quaternion (x, y, z, w) in the world, nu_r (6,) relative to the water,
-    body frame, q_dot (n,) rad/s; level and at rest where nothing is said.
+    body frame, q_dot (n,) rad/s; level and at rest by default.
     """
     rates = np.zeros(len(q)) if q_dot is None else q_dot
     return np.concatenate([position, quat, nu_r, q, rates, np.zeros(m)])
@@ -137,7 +137,7 @@ def finish_step(
 def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
     """Row k of out: the derivative of the state x under these commands."""
     a, b, c, d = _unit_quaternion(x)
-    nu_r = six(x, VELOCITY)
+    nu_r = spatial_at(x, VELOCITY)
     rates = pose_rates(nu_r, a, b, c, d)
     for i in range(3):  # over ground: the water carries it along
         out[k, POSITION + i] = rates[i] + current[i]
@@ -151,7 +151,7 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
         out[k, JOINTS + i - 1] = rate
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
     nu_r_dot = accelerate(model, work, n, down_in_body(a, b, c, d), nu_r, wrench)
-    store6(out, k, VELOCITY, nu_r_dot)
+    store_spatial(out, k, VELOCITY, nu_r_dot)
     for i in range(1, n + 1):
         out[k, JOINTS + n + i - 1] = work[i, RATE]
     for i in range(m):

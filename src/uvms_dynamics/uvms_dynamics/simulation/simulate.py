@@ -24,7 +24,7 @@ def simulate(
 ) -> Array:
     """States (steps+1, nx) from the state x (nx,) on, by Runge-Kutta steps of `step` s.
 
-    The state is laid out as `integrator` says; `make_state` makes one. thrust_command (m,) N and
+    The state is laid out as in `integrator`; `make_state` makes one. thrust_command (m,) N and
     effort (n,) N m are constant. Raises ConfigError for shapes, a step or a number of
     steps that do not fit. Nothing looks at whether the step is stable: `Plant` does.
     """

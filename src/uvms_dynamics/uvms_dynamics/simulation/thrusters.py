@@ -26,5 +26,5 @@ def build_thrusters(vehicle: Vehicle) -> Thrusters:
 def thrust_rate(thrusters, i, thrust, command):
     """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
     limit, slew = thrusters[i, LIMIT], thrusters[i, SLEW]
-    wanted = bounded(command, limit)
-    return bounded((wanted - thrust) * thrusters[i, PER_TIME_CONSTANT], slew)
+    target = bounded(command, limit)
+    return bounded((target - thrust) * thrusters[i, PER_TIME_CONSTANT], slew)
