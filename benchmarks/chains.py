@@ -1,7 +1,7 @@
-"""Random vehicles with arms of any number of joints, for figures over the number of joints.
+"""Random vehicles with arms of any number of joints, for metrics over the number of joints.
 
 Each is a torpedo with a slender arm: links of cylinders along their common normals, general angles
-between the joints (nothing parallel, so that no zero can be left out), a full 6x6 added mass on
+between the joints (no parallel axes, so that no term vanishes), a full 6x6 added mass on
 every body, strips of drag on every link, damping, buoyancy, friction, rotors. The reach is about
 1.6 m, or 0.12 m a joint where that is more, as in a snake robot.
 """
@@ -14,7 +14,7 @@ from uvms_core.vehicle.arm import Cylinder
 from uvms_core.vehicle.shapes import cylinder_added_mass, cylinder_inertia, cylinder_volume
 
 JOINTS = (4, 8, 16, 32)
-"""Numbers of joints that the speed table asks for."""
+"""Numbers of joints in the speed table."""
 
 SEED = 1
 _STILL = {"linear_damping": [0.0] * 6, "quadratic_damping": [0.0] * 6}
@@ -31,7 +31,7 @@ def chain(n: int, seed: int = SEED) -> Vehicle:
     data["hull"]["cg_m"] = [*rng.uniform(-0.01, 0.01, 2).tolist(), 0.012]
     arm["base"]["rpy_deg"] = rng.uniform(-180.0, 180.0, 3).tolist()
     arm["tool"]["position_m"] = [0.1, 0.0, 0.0]
-    arm["stowed_deg"] = [0.0] * n
+    arm["stowed_deg"], arm["postures_deg"] = [0.0] * n, {}
     arm["joints"] = [{**joint, **_joint(rng, x), "name": f"joint_{i}"} for i, x in _named(lengths)]
     arm["links"] = [{**_link(rng, x, density), "name": f"link_{i}"} for i, x in _named(lengths)]
     return vehicle_from_data(data, f"chain of {n} joints")
@@ -63,7 +63,7 @@ def _joint(rng: np.random.Generator, length: float) -> dict:
 
 
 def _link(rng: np.random.Generator, length: float, density: float) -> dict:
-    """A cylinder from joint to joint, whose mass lies a little beside its axis."""
+    """A cylinder from joint to joint, whose mass lies slightly off its axis."""
     shape = Cylinder(
         center_m=(-0.5 * length, 0.0, 0.0),
         axis=(1.0, 0.0, 0.0),

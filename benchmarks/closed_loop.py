@@ -1,4 +1,4 @@
-"""Runs of the closed loop in one process, and what they show."""
+"""Runs of the closed loop in one process, and their errors."""
 
 from dataclasses import dataclass
 
@@ -12,19 +12,19 @@ from uvms_core.signals import Array, PathGoal, to_seconds
 from uvms_dynamics import build_model, end_effector
 from uvms_dynamics.kernels.rotations import quat_to_rpy
 
-# The planner is told of the goal in the first tick and begins it a step after that it plans.
+# The planner gets the goal in the first tick and starts on it one planner step later.
 PATH_BEGINS_S = 0.5
 
 
 @dataclass(frozen=True)
 class Run:
-    """What a run left: everything at every tick."""
+    """Errors of a run at every tick."""
 
     completed: bool
     rpy_deg: Array  # (k, 3) true
     navigation_error: Array  # (k,) m
-    true_error: Array  # (j,) m, end effector from its path while that lasts; (0,) without one
-    seen_error: Array  # (j,) m, the same by estimate and encoders
+    true_error: Array  # (j,) m, end effector from its path while it lasts; (0,) without one
+    seen_error: Array  # (j,) m, the same by estimated pose and encoders
 
 
 def run(scenario: Scenario) -> Run:
@@ -63,7 +63,7 @@ def _errors(goal: PathGoal, model, ticks: list[LoopTick]) -> tuple[list[float], 
 
 
 def _begin(ticks: list[LoopTick]) -> float:
-    """When the path begins, as the planner says in its feedback."""
+    """When the path begins, by the planner's feedback."""
     for tick in ticks:
         if tick.plan is not None and tick.plan.feedback is not None:
             feedback = tick.plan.feedback

@@ -1,6 +1,6 @@
-"""Loops in compiled code around the kernels, as a simulation has them: nothing comes from Python.
+"""Loops in compiled code around the kernels, as in a simulation: no calls from Python.
 
-All that the benchmarks use besides the kernels that `uvms_dynamics` itself names is here.
+Everything that the benchmarks use beyond the public functions of `uvms_dynamics` is here.
 """
 
 from collections.abc import Callable

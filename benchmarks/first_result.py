@@ -1,7 +1,7 @@
 """The first result of a fresh process: `python first_result.py`.
 
-Prints the clock readings, s, after each part: parts of the time from the process's start, which
-whoever started it has read on the same clock.
+Prints the clock readings, s, after each part: the caller has
+read the time of the process's start on the same clock.
 """
 
 import json

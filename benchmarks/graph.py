@@ -18,7 +18,7 @@ WARM_S = 3.0
 
 
 class Watch:
-    """Takes the place of the line on the screen, and notes when time passed where."""
+    """Replaces the progress line and records when simulated time passed."""
 
     began: tuple[float, float] | None = None
     ended: tuple[float, float] | None = None
@@ -27,7 +27,7 @@ class Watch:
         pass
 
     def show(self, stamp: int, note: str) -> None:
-        """Note simulated and wall time, when the simulated time has moved."""
+        """Record simulated and wall time when simulated time has advanced."""
         now = to_seconds(stamp), time.monotonic()
         if now[0] >= WARM_S and Watch.began is None:
             Watch.began = now
@@ -35,11 +35,11 @@ class Watch:
             Watch.ended = now
 
     def end(self) -> None:
-        """Nothing to clear away."""
+        """Nothing to clean up."""
 
 
 def main() -> int:
-    """Run as told."""
+    """Run as the arguments say."""
     how, seconds, folder = sys.argv[1:]
     ProgressLine.show, ProgressLine.end = Watch(0).show, Watch(0).end  # type: ignore[method-assign]
     scenario = load_scenario("manipulation", duration_s=float(seconds))

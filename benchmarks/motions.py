@@ -23,17 +23,17 @@ class Motion(NamedTuple):
 
 
 def dry_vehicle() -> Vehicle:
-    """The reference vehicle as rigid bodies in a vacuum, as a robotics library sees it."""
+    """The reference vehicle as rigid bodies in a vacuum, as a rigid-body library models it."""
     n = len(load_vehicle().arm.links)
     hull: dict = {"linear_damping": [0.0] * 6, "quadratic_damping": [0.0] * 6}
     changes = {f"hull.{name}": value for name, value in hull.items()}
     changes |= {"hull.added_mass": [0.0] * 6, "environment.water_density_kg_m3": 1e-30}
     for i in range(n):
         changes |= {f"arm.links.{i}.drag": [], f"arm.links.{i}.added_mass": [0.0] * 6}
-    worked_out = load_vehicle()
+    derived = load_vehicle()
     for name in ("mass_kg", "cg_m", "inertia_kg_m2"):
-        changes[f"hull.{name}"] = getattr(worked_out.hull, name)
-        for i, link in enumerate(worked_out.arm.links):
+        changes[f"hull.{name}"] = getattr(derived.hull, name)
+        for i, link in enumerate(derived.arm.links):
             changes[f"arm.links.{i}.{name}"] = getattr(link, name)
     return load_vehicle(overrides=changes)
 
@@ -51,8 +51,8 @@ def motions(n: int, count: int = COUNT, seed: int = 1) -> list[Motion]:
     return made
 
 
-def calm_motion(n: int, seed: int = 1) -> Motion:
-    """A slow motion near level, from which a simulation of any arm can go on for long."""
+def slow_motion(n: int, seed: int = 1) -> Motion:
+    """A slow motion near level, from which a simulation of any arm stays slow."""
     rng = np.random.default_rng(seed)
     quat = np.concatenate([rng.normal(scale=0.05, size=3), [1.0]])
     nu, nu_dot = 0.1 * rng.normal(size=(2, 6))

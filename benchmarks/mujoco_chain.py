@@ -12,7 +12,7 @@ from uvms_core.vehicle.frames import Pose, distal_pose, mounting_pose
 from uvms_dynamics import matrix_to_quat, quat_multiply
 
 FLUIDS = ("inertia_box", "ellipsoid")
-"""MuJoCo's two models: a box of the body's inertia, which it takes by default, or an ellipsoid."""
+"""MuJoCo's two models: a box of the body's inertia (the default), or an ellipsoid."""
 
 _OFF = ("contact", "constraint", "frictionloss", "limit", "equality", "sensor", "actuation")
 
@@ -27,7 +27,7 @@ def mujoco_model(
 def mjcf(vehicle: Vehicle, step_s: float, water: bool = True, fluid: str = "inertia_box") -> str:
     """MJCF text: a free joint, then hinges about z; the world's z points down.
 
-    Joint frames are those of the kernels, proximal. Contacts, constraints and all else that a
+    Joint frames are those of the kernels, proximal. Contacts, constraints and whatever else a
     swimming chain does not need are switched off, so that they cost MuJoCo nothing.
     """
     root = ElementTree.Element("mujoco", model=vehicle.name)

@@ -1,9 +1,9 @@
 """Paired timing: ours and its references take turns in one process, round by round.
 
-Machines are noisy: the noise comes and goes in seconds, and other programs take their turns of some
-milliseconds. Within a round of a millisecond or two both sides mostly meet the same machine, so
-that the ratio of a round means something where two separate times do not. The median of the rounds'
-ratios is what counts.
+Machines are noisy: clock rates drift within seconds, and other programs interrupt for milliseconds.
+Within a round of a millisecond or two both sides mostly run under the same conditions, so that the
+ratio of a round is meaningful where two separate times are not. The result is the median of the
+rounds' ratios.
 """
 
 import gc
@@ -16,7 +16,7 @@ ROUNDS, MOST_ROUNDS = 31, 125
 """Rounds of calls that take long by themselves, and of short ones."""
 
 ROUND_S = 0.001
-"""About how long each side works in a round, or one call where that takes longer."""
+"""Approximate working time of each side in a round, or one call where that takes longer."""
 
 Work = Callable[[], object]
 
@@ -25,7 +25,7 @@ Work = Callable[[], object]
 class Timing:
     """Least time of a call of ours in s, and its ratio to each reference's by name.
 
-    A ratio below 1 says that we are faster; that of rates, such as steps a second, is its inverse.
+    A ratio below 1 means that we are faster; that of rates, such as steps a second, is its inverse.
     """
 
     seconds: float
@@ -33,11 +33,11 @@ class Timing:
 
 
 def paired(ours: Work, references: Mapping[str, Work], rounds: int | None = None) -> Timing:
-    """Time `ours` against each of `references`, in as many rounds as fit their length or as said.
+    """Time `ours` against each of `references`; `rounds` defaults to what their length allows.
 
-    A side's calls per round are chosen so that all work equally long, about ROUND_S, and are
-    disturbed equally often; every other round goes through the sides backwards, so that none is
-    always first.
+    A side's calls per round are chosen so that all work for about ROUND_S and are
+    interrupted equally often; every other round runs the sides in reverse, so that none is always
+    first.
     """
     sides = {"": ours, **references}
     once = {name: _seconds_of_one(work) for name, work in sides.items()}
@@ -71,8 +71,8 @@ def seconds_per_call(work: Work, count: int) -> float:
 
 
 def processor_seconds_per_call(work: Work, count: int) -> float:
-    """The same in processor time of this process, which other programs on the machine do not add
-    to as they do to the time on the wall.
+    """The same in processor time of this process, which other programs do not lengthen as they
+    do wall time.
     """
     began = time.process_time()
     for _ in range(count):

@@ -1,4 +1,4 @@
-"""Drives the planner alone along the manipulation's path, and judges what it planned."""
+"""Drives the planner alone along the manipulation's path, and evaluates the plan."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -8,12 +8,13 @@ import numpy as np
 from uvms_bringup.scenario import load_scenario
 from uvms_core.signals import Array, JointStates, Odometry, Reference, to_nanoseconds
 from uvms_dynamics import build_model, coupling_wrench, restoring_wrench, rpy_to_quat
+from uvms_dynamics.simulation.plant.config import initial_joints
 from uvms_planner import MotionPlanner
 
 
 @dataclass
 class Planned:
-    """What the planner gave along the path."""
+    """The planner's output along the path."""
 
     step_s: float
     references: list[Reference] = field(default_factory=list)
@@ -25,13 +26,13 @@ class Planned:
 def plan(method: str, seconds: float, clock: Callable[[], float] = lambda: 0.0) -> Planned:
     """The references of the first `seconds` of the path by one of the planner's methods.
 
-    The vehicle is told to stand still: the plan goes on from the plan, not from the odometry.
+    The odometry stays at the start: the planner continues from its own plan.
     """
     scenario = load_scenario("manipulation", [f"planner.method={method}"])
     vehicle, start = scenario.load_vehicle(), scenario.plant
     planner = MotionPlanner(vehicle, scenario.planner, scenario.seed)
     result = Planned(scenario.planner.step_s)
-    q = np.radians(start.initial_joints_deg)
+    q = initial_joints(vehicle, start)
     for index in range(round(seconds / result.step_s) + 4):
         stamp = to_nanoseconds(index * result.step_s)
         odometry = Odometry(
@@ -43,7 +44,7 @@ def plan(method: str, seconds: float, clock: Callable[[], float] = lambda: 0.0) 
         step = planner.step(stamp, odometry, joints)
         spent = clock() - began
         result.references += step.references
-        if step.step is not None and index > 4:  # the first ones load kernels
+        if step.step is not None and index > 4:  # the first steps load kernels
             result.step_seconds.append(spent)
             result.evaluations.append(step.step.evaluations)
         if step.finished is not None:

@@ -14,7 +14,7 @@ ABA = "pinocchio.aba called from Python, rigid bodies alone"
 
 
 class Aba:
-    """Pinocchio's articulated bodies for each of some motions, called from Python."""
+    """Pinocchio's articulated bodies for several motions, called from Python."""
 
     def __init__(self, vehicle: Vehicle, motions: Sequence[Motion]) -> None:
         self.model = pinocchio_model(vehicle)

@@ -1,9 +1,9 @@
-"""Measure speed and quality of UVMS: one JSON object a line on standard output.
+"""Measure speed and quality of UVMS: one JSON object per line on standard output.
 
 Keys: name, value, unit, reference (what it is compared with, in words), ratio, target, met.
-`ratio` is our value over the reference's, in the same unit: of times and errors less is better, of
-rates more. For speed both take turns in one process. A missed target is said by `"met": false`; the
-exit code is 0 all the same, so that a measurement is never lost.
+`ratio` is our value over the reference's, in the same unit: lower is better for times and errors,
+higher for rates. For speed both take turns in one process. A missed target is `"met": false`; the
+exit code is still 0, so that no measurement is lost.
 """
 
 import argparse
@@ -15,13 +15,13 @@ from importlib import import_module
 from pathlib import Path
 from types import ModuleType
 
-# One core for each side of a comparison, whatever a BLAS library finds on the machine.
+# One core for each side of a comparison: keeps BLAS libraries from starting threads.
 for _name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(_name, "1")
 
 CASES = tuple(
     path.stem for path in sorted((Path(__file__).parent / "cases").glob("[!_]*.py"))
-)  # one benchmark a file: `measure(full)` yields its figures
+)  # one benchmark per file: `measure(full)` yields its metrics
 
 
 def main() -> int:
@@ -37,9 +37,9 @@ def main() -> int:
         return 0
     began = time.perf_counter()
     failed = [name for name in options.names or CASES if not _run(name, options.full)]
-    say(f"{time.perf_counter() - began:.0f} s in all")
+    log(f"{time.perf_counter() - began:.0f} s in total")
     if failed:
-        say(f"could not be measured: {', '.join(failed)}")
+        log(f"could not be measured: {', '.join(failed)}")
     return 1 if failed else 0
 
 
@@ -51,7 +51,7 @@ def parser() -> argparse.ArgumentParser:
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     made.add_argument("names", nargs="*", metavar="NAME", help=f"any of: {', '.join(CASES)}")
-    made.add_argument("--list", action="store_true", help="say what each benchmark measures")
+    made.add_argument("--list", action="store_true", help="list what each benchmark measures")
     made.add_argument("--full", action="store_true", help="whole runs instead of shortened ones")
     return made
 
@@ -61,8 +61,8 @@ def case(name: str) -> ModuleType:
     return import_module(f"cases.{name}")
 
 
-def say(text: str) -> None:
-    """Progress, beside the figures."""
+def log(text: str) -> None:
+    """Progress, on standard error."""
     print(f"# {text}", file=sys.stderr, flush=True)
 
 
@@ -71,18 +71,18 @@ def _summary(module: ModuleType) -> str:
 
 
 def _run(name: str, full: bool) -> bool:
-    """Print a benchmark's figures; False where it failed, which does not end the rest."""
+    """Print a benchmark's metrics; False if it failed, which does not stop the others."""
     began = time.perf_counter()
     try:
         module = case(name)
-        say(f"{name}: {_summary(module)}")
-        figures: Iterator = module.measure(full)
-        for figure in figures:
-            print(figure.line(), flush=True)
-    except Exception as fault:  # the others shall be measured all the same
-        say(f"{name} failed: {type(fault).__name__}: {fault}")
+        log(f"{name}: {_summary(module)}")
+        metrics: Iterator = module.measure(full)
+        for metric in metrics:
+            print(metric.line(), flush=True)
+    except Exception as fault:  # the others are measured all the same
+        log(f"{name} failed: {type(fault).__name__}: {fault}")
         return False
-    say(f"{name}: {time.perf_counter() - began:.1f} s")
+    log(f"{name}: {time.perf_counter() - began:.1f} s")
     return True
 
 

@@ -20,9 +20,9 @@ setup(
         (f"share/{PACKAGE}/launch", sorted(glob("launch/*.*"))),
     ],
     install_requires=[
+        "annotated-types>=0.5",
         "numpy>=1.26",
         "pydantic>=2.5",
-        "PyYAML>=6",
         "rich>=13",
         "uvms_analysis",
         "uvms_control",
@@ -43,6 +43,7 @@ setup(
         ],
         "uvms.commands": [
             "added-mass = uvms_bringup.commands.added_mass:COMMAND",
+            "fields = uvms_bringup.commands.fields:COMMAND",
             "replay = uvms_bringup.commands.replay:COMMAND",
             "run = uvms_bringup.commands.run:COMMAND",
             "simulate = uvms_bringup.commands.simulate:COMMAND",

@@ -1,6 +1,6 @@
-"""Simulate a scenario without ROS, with a change of its own, and read the log as arrays.
+"""Simulate a scenario without ROS, in two currents, and read the logs as arrays.
 
-Uses uvms_bringup: the same log and the same figures as `uvms run` leaves.
+Uses uvms_bringup and uvms_analysis; the log and the summary are those of `uvms run`.
 Run it: python examples/bringup_simulate.py
 """
 
@@ -22,10 +22,10 @@ with tempfile.TemporaryDirectory() as folder:
         summary = session.run_simulation()
         log = RunLog.open(output / "run.mcap")
         thrust = log.series(topics.THRUSTER_COMMAND)
-        true, seen = log.series(topics.TRUE_ODOMETRY), log.series(topics.DISTURBANCE_BUDGET)
-        print(f"\nhover for {true.time[-1]:g} s in a current of {current} m/s")
+        truth, budget = log.series(topics.TRUE_ODOMETRY), log.series(topics.DISTURBANCE_BUDGET)
+        print(f"\nhover for {truth.time[-1]:g} s in a current of {current} m/s")
         print(f"  files: {', '.join(sorted(path.name for path in output.iterdir()))}")
-        print(f"  farthest from the start: {np.linalg.norm(np.ptp(true.position, axis=0)):.4f} m")
+        print(f"  farthest from the start: {np.linalg.norm(np.ptp(truth.position, axis=0)):.4f} m")
         print(f"  thrust at the end, N: {np.round(thrust.thrust[-1], 2)}")
-        print(f"  external force observed at the end, N: {np.round(seen.external[-1, :3], 2)}")
+        print(f"  external force observed at the end, N: {np.round(budget.external[-1, :3], 2)}")
         print(f"  real-time factor {summary['real_time_factor']:.0f}")

@@ -1,7 +1,7 @@
-"""Thrusts for a wrench, within the thrusters' limits, and what happens beyond them.
+"""Thrusts for a wrench, within the thrusters' limits and beyond them.
 
-Uses uvms_control: bounded weighted least squares. When not all of a wrench can be had, the weights
-say which axes give way; `preserve_direction` scales the whole wrench instead.
+Uses uvms_control: bounded weighted least squares. If a wrench cannot be reached, the weights decide
+which axes give way; `preserve_direction` scales the whole wrench instead.
 Run it: python examples/control_allocation.py
 """
 
@@ -12,9 +12,9 @@ from uvms_core.signals import Wrench
 from uvms_core.vehicle import load_vehicle
 
 WRENCHES = {
-    "a little of everything": [10.0, 5.0, -8.0, 1.0, -3.0, 2.0],
-    "all the main thruster has": [98.0, 0.0, 0.0, 0.0, 0.0, 0.0],
-    "more surge than there is": [150.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "within all limits": [10.0, 5.0, -8.0, 1.0, -3.0, 2.0],
+    "the main thruster's limit": [98.0, 0.0, 0.0, 0.0, 0.0, 0.0],
+    "more surge than available": [150.0, 0.0, 0.0, 0.0, 0.0, 0.0],
     "too much heave and roll at once": [0.0, 0.0, 190.0, 8.0, 0.0, 0.0],
 }
 vehicle = load_vehicle()
@@ -25,8 +25,8 @@ for preserve in (False, True):
     allocator = ThrustAllocator(vehicle, AllocatorConfig(preserve_direction=preserve))
     print(f"\npreserve_direction = {preserve}")
     for tick, (text, wrench) in enumerate(WRENCHES.items()):
-        # A second between commands, so that no slew limit matters.
+        # One second between commands, so that slew limits do not matter.
         _, found = allocator.step(Wrench((tick + 1) * 1_000_000_000, np.array(wrench)))
         print(f"  {text}: {np.array(wrench)}")
         print(f"    thrust   {found.thrust}  at a limit: {int(found.saturated.sum())}")
-        print(f"    achieved {found.achieved}  short by {found.residual}")
+        print(f"    achieved {found.achieved}  missing {found.residual}")

@@ -1,6 +1,6 @@
-"""The arm swings to starboard below a vehicle that nobody controls: it rolls, and finds rest again.
+"""The arm swings to starboard under an uncontrolled vehicle, which rolls and comes to rest again.
 
-Uses uvms_dynamics alone: the plant, its truth, and the mass matrix for the kinetic energy
+Uses uvms_dynamics: the plant, its true state, and the mass matrix for the kinetic energy
 1/2 zeta^T M(q) zeta with zeta = (nu, q_dot). Run it: python examples/dynamics_free_roll.py
 """
 
@@ -31,11 +31,11 @@ while plant.stamp <= 40_000_000_000:
         energy = 0.5e3 * zeta @ mass_matrix(model, q) @ zeta
         moment = truth.disturbance.restoring[3]
         print(f"{t:6.1f}{np.degrees(q[0]):8.2f}{roll:8.2f}{pitch:8.2f}{energy:16.2f}{moment:31.3f}")
-    # A drive that follows the swing: what a joint lacks in angle and rate becomes acceleration.
+    # Computed torque: errors of angle and rate become an acceleration of the joint.
     u = np.clip((t - SWING_FROM) / (SWING_TO - SWING_FROM), 0.0, 1.0)
-    wanted = STRETCHED + u**2 * (3 - 2 * u) * (SWUNG - STRETCHED)
-    acceleration = BANDWIDTH**2 * (wanted - q) - 2.0 * BANDWIDTH * q_dot
+    target = STRETCHED + u**2 * (3 - 2 * u) * (SWUNG - STRETCHED)
+    acceleration = BANDWIDTH**2 * (target - q) - 2.0 * BANDWIDTH * q_dot
     effort = mass_matrix(model, q)[6:, 6:] @ acceleration
     plant.step(ThrusterCommand(plant.stamp, idle), JointCommand(plant.stamp, effort))
 
-print("\nThe vehicle comes to rest heeled over: there, weight and buoyancy give no more moment.")
+print("\nThe vehicle comes to rest at a roll angle at which weight and buoyancy balance.")

@@ -1,7 +1,7 @@
-"""The dynamics of one's own chain: a hull and two links in the water, as plain data, without ROS.
+"""The dynamics of your own vehicle and arm: a hull and two links in the water, from plain data.
 
-Masses, buoyancy, inertia, added mass and drag of the arm follow from the shapes. What is not said
-at all (thrusters, sensors, water, drives) is as in the reference vehicle.
+Uses uvms_dynamics. Buoyancy, inertia, added mass and drag of the arm follow from the shapes;
+thrusters, sensors, water and drives are those of the reference vehicle.
 Run it: python examples/dynamics_own_chain.py
 """
 
@@ -26,6 +26,7 @@ vehicle = load_vehicle(
             {"name": "lower", "mass_kg": 2.0, "cylinder": lower},
         ],
         "arm.stowed_deg": [0.0, 90.0],
+        "arm.postures_deg": {},
     }
 )
 model = build_model(vehicle)
@@ -37,5 +38,5 @@ needed = inverse_dynamics(model, level, nu, acceleration[:6], q, q_dot, accelera
 np.set_printoptions(formatter={"float": "{:.3f}".format}, linewidth=100)
 print(f"acceleration of the vehicle, m/s^2 and rad/s^2: {acceleration[:6]}")
 print(f"acceleration of the joints, rad/s^2:            {acceleration[6:]}")
-print(f"wrench and torques that this needs, N and N m:  {needed}")
+print(f"wrench and torques that this takes, N and N m:  {needed}")
 print(f"diagonal of the mass matrix, kg and kg m^2:     {mass_matrix(model, q).diagonal()}")

@@ -1,7 +1,7 @@
 """The navigation filter and the disturbance observer on simulated sensors.
 
-Uses uvms_observer on the readings of a plant that swims a curve while its arm swings: position,
-heading and roll disturbance as estimated, beside the truth.
+Uses uvms_observer on the samples of a plant that moves along a curve while its arm swings, and
+prints errors of position and heading, and the observed and true roll moment.
 Run it: python examples/observer_navigation.py
 """
 
@@ -27,13 +27,13 @@ while plant.stamp <= 60_000_000_000:
     estimate = navigation.step(plant.stamp, frame.imu, frame.dvl, frame.pressure, frame.gps)
     budget, _ = observer.step(estimate, frame.joints, achieved)
     if plant.stamp and plant.stamp % 5_000_000_000 == 0:
-        off = 100 * np.linalg.norm(estimate.position - truth.odometry.position)
+        error = 100 * np.linalg.norm(estimate.position - truth.odometry.position)
         sigma = 100 * np.sqrt(np.trace(estimate.pose_covariance[:3, :3]))
         yaw, true_yaw = (quat_to_rpy(o.quaternion)[2] for o in (estimate, truth.odometry))
-        seen, real = ((b.restoring + b.coupling)[3] for b in (budget, truth.disturbance))
+        observed, true = ((b.restoring + b.coupling)[3] for b in (budget, truth.disturbance))
         print(
-            f"{t:6.1f}{off:16.2f}{sigma:20.2f}{np.degrees(yaw - true_yaw):15.3f}"
-            f"{seen:24.3f}{real:8.3f}"
+            f"{t:6.1f}{error:16.2f}{sigma:20.2f}{np.degrees(yaw - true_yaw):15.3f}"
+            f"{observed:24.3f}{true:8.3f}"
         )
     thrust = np.array([6.0, 1.0, -1.0, 0.0, 0.0, 0.0, 0.0])
     effort = np.array([1.5 * np.sin(0.6 * t), 0.0, 0.0, 0.0])

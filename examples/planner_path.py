@@ -1,4 +1,4 @@
-"""Plan a path of the end effector, once with the genetic algorithm and once with the arm alone.
+"""Plan a path of the end effector, once by the genetic method and once with the arm alone.
 
 Uses uvms_planner: a path in phases becomes a goal; every step of 0.5 s gives a reference, which is
 the motion of vehicle and joints together. Run it: python examples/planner_path.py

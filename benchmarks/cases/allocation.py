@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import daqp
 import numpy as np
 import quadprog
-from figures import Figure, Target
+from metrics import Metric, Target
 from paired import paired
 from scipy.optimize import lsq_linear
 
@@ -17,7 +17,7 @@ from uvms_dynamics import thruster_matrix
 
 COUNT = 64
 AGREEMENT = 1e-6
-"""How much more than the best of all the objective of any may be, relative."""
+"""Relative amount by which an objective may exceed the best of all solvers."""
 
 
 class Problem:
@@ -73,8 +73,8 @@ class Problem:
         return float(0.5 * u @ self.hessian @ u + self.gradient(tau) @ u)
 
 
-def measure(full: bool) -> Iterator[Figure]:
-    """Wrenches that change slowly, a part of them beyond the thrusters' limits."""
+def measure(full: bool) -> Iterator[Metric]:
+    """Wrenches that change slowly, some of them beyond the thrusters' limits."""
     problem = Problem()
     names = {
         "scipy": "scipy.optimize.lsq_linear, bvls",
@@ -86,7 +86,7 @@ def measure(full: bool) -> Iterator[Figure]:
         _through(problem, "ours"), {name: _through(problem, name) for name in names}, rounds=21
     )
     for name, text in names.items():
-        yield Figure(
+        yield Metric(
             f"allocation_against_{name}", 1e6 * timing.seconds / COUNT, "us", text,
             timing.ratio[name], Target("ratio", "<=", 1.0),
         )  # fmt: skip

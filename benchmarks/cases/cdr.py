@@ -4,8 +4,8 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 import numpy as np
-from figures import Figure, Target
 from mcap_ros2._dynamic import generate_dynamic, serialize_dynamic
+from metrics import Metric, Target
 from paired import paired
 from rclpy.serialization import deserialize_message, serialize_message
 
@@ -22,24 +22,24 @@ RCLPY = "rclpy"
 BOTH = {MCAP: 1.0, RCLPY: 1.0}
 
 
-def measure(full: bool) -> Iterator[Figure]:
-    """A short message that comes often and a long one that comes seldom, each way.
+def measure(full: bool) -> Iterator[Metric]:
+    """A short, frequent message and a long, rare one, each way.
 
     mcap_ros2 gets lists of numbers, which it needs, made beforehand. rclpy gets a message that is
-    filled beforehand; `..._from_signal` counts the filling, on both sides.
+    filled beforehand; `..._from_signal` includes the filling, on both sides.
     """
     for topic, signal in ((topics.ODOMETRY, _odometry()), (topics.REFERENCE, _reference())):
         short = topic.type.rsplit("/", 1)[-1].lower()
-        yield from _figures(f"cdr_{short}_encode", _encoders(topic, signal), BOTH)
-        yield from _figures(f"cdr_{short}_decode", _decoders(topic, signal), BOTH)
-        yield from _figures(f"cdr_{short}_from_signal", _from_signal(topic, signal), {RCLPY: 1.0})
+        yield from _metrics(f"cdr_{short}_encode", _encoders(topic, signal), BOTH)
+        yield from _metrics(f"cdr_{short}_decode", _decoders(topic, signal), BOTH)
+        yield from _metrics(f"cdr_{short}_from_signal", _from_signal(topic, signal), {RCLPY: 1.0})
 
 
-def _figures(name: str, sides: dict[str, Callable[[], Any]], bounds) -> Iterator[Figure]:
+def _metrics(name: str, sides: dict[str, Callable[[], Any]], bounds) -> Iterator[Metric]:
     ours, *others = sides
     timing = paired(sides[ours], {other: sides[other] for other in others}, rounds=15)
     for other in others:
-        yield Figure(
+        yield Metric(
             f"{name}_against_{other}", 1e6 * timing.seconds, "us", other, timing.ratio[other],
             Target("ratio", "<=", bounds[other]),
         )  # fmt: skip
@@ -71,7 +71,7 @@ def _decoders(topic: Topic, signal: Any) -> dict[str, Callable[[], Any]]:
 
 
 def _from_signal(topic: Topic, signal: Any) -> dict[str, Callable[[], Any]]:
-    """The way of a node's output, from the dataclass to the bytes, and back for its input."""
+    """The path of a node's output, from the dataclass to the bytes, and back for its input."""
     ours, cls = codec(topic.type), message_class(topic)
 
     def raw() -> Any:

@@ -1,11 +1,11 @@
-"""Forward dynamics with the water, arms of 4 to 32 joints: against Pinocchio's rigid aba."""
+"""Forward dynamics with hydrodynamics, arms of 4 to 32 joints: against Pinocchio's rigid aba."""
 
 from collections.abc import Callable, Iterator
 
 import numpy as np
 from chains import JOINTS, chain, without_water
 from compiled import forward_loop
-from figures import Figure, Target
+from metrics import Metric, Target
 from motions import COUNT, Motion, motions
 from paired import paired
 from rigid import ABA, Aba
@@ -15,7 +15,7 @@ from uvms_dynamics import Model, build_model, forward_dynamics
 GROWTH = (32, 8)
 
 
-def measure(full: bool) -> Iterator[Figure]:
+def measure(full: bool) -> Iterator[Metric]:
     """Ours called from Python, then in a compiled loop; last, how the loop grows with the arm."""
     loops = {}
     for n in JOINTS:
@@ -28,7 +28,7 @@ def measure(full: bool) -> Iterator[Figure]:
             ("compiled", loops[n], 0.3),
         ):
             timing = paired(ours, {ABA: aba})
-            yield Figure(
+            yield Metric(
                 f"forward_dynamics_{how}_n{n}", 1e6 * timing.seconds / COUNT, "us",
                 f"{ABA}, the same {n} joints", timing.ratio[ABA], Target("ratio", "<=", bound),
             )  # fmt: skip
@@ -43,18 +43,18 @@ def _from_python(model: Model, cases: list[Motion]) -> Callable[[], None]:
     return work
 
 
-def _growth(loops: dict[int, Callable[[], None]]) -> Figure:
+def _growth(loops: dict[int, Callable[[], None]]) -> Metric:
     long, short = GROWTH
     reference = f"the same with {short} joints"
     timing = paired(loops[long], {reference: loops[short]})
-    return Figure(
+    return Metric(
         "forward_dynamics_growth", 1e6 * timing.seconds / COUNT, "us", reference,
         timing.ratio[reference], Target("ratio", "<=", 4.0),
     )  # fmt: skip
 
 
 def _check_same_bodies(vehicle, cases: list[Motion], aba: Aba) -> None:
-    """Without water both must say the same, or the comparison is worth nothing."""
+    """Without water both must agree, or the comparison is meaningless."""
     loop, found = forward_loop(build_model(without_water(vehicle)), cases)
     loop()
     expected = aba.results()

@@ -1,4 +1,4 @@
-"""Runge-Kutta steps a second on one thread: against MuJoCo's rollout with RK4 and its water."""
+"""Runge-Kutta steps per second on one thread: against MuJoCo's rollout with RK4 and its water."""
 
 from collections.abc import Callable, Iterator
 
@@ -7,8 +7,8 @@ import mujoco.rollout
 import numpy as np
 from chains import JOINTS, chain
 from compiled import STEP_S, STEPS, stepping
-from figures import Figure, Target
-from motions import calm_motion
+from metrics import Metric, Target
+from motions import slow_motion
 from mujoco_chain import FLUIDS, mujoco_model, mujoco_state
 from paired import paired
 
@@ -19,17 +19,17 @@ NAMES = {
 }
 
 
-def measure(full: bool) -> Iterator[Figure]:
-    """The same chain, state and step. MuJoCo's fluids are simpler: no added mass solved for."""
+def measure(full: bool) -> Iterator[Metric]:
+    """The same chain, state and step. MuJoCo's fluids are simpler: no added mass is solved for."""
     for n in JOINTS:
-        vehicle, motion = chain(n), calm_motion(n)
+        vehicle, motion = chain(n), slow_motion(n)
         theirs = {
             name: rollout(mujoco_model(vehicle, STEP_S, fluid=fluid), motion)
             for fluid, name in NAMES.items()
         }
         timing = paired(stepping(vehicle, motion), theirs)
         for fluid, name in NAMES.items():
-            yield Figure(
+            yield Metric(
                 f"rk4_steps_against_mujoco_{fluid}_n{n}", STEPS / timing.seconds, "1/s", name,
                 1.0 / timing.ratio[name], Target("ratio", ">=", 4.0),
             )  # fmt: skip
@@ -43,12 +43,12 @@ def rollout(model: mujoco.MjModel, motion) -> Callable[[], Array]:
     start = np.empty(mujoco.mj_stateSize(model, what))
     mujoco.mj_getState(model, data, start, what)
     states = np.empty((1, STEPS, len(start)))
-    runner = mujoco.rollout.Rollout(nthread=0)  # none of its own: in the calling one
+    runner = mujoco.rollout.Rollout(nthread=0)  # runs in the calling thread
 
     def work() -> Array:
         runner.rollout(model, data, start[None], nstep=STEPS, state=states)
         return states[0, -1]
 
     if not np.all(np.isfinite(work())) or any(warning.number for warning in data.warning):
-        raise ArithmeticError("MuJoCo's run went astray")
+        raise ArithmeticError("MuJoCo's run diverged")
     return work

@@ -1,4 +1,4 @@
-"""From the start of a process to its first forward dynamics: kernels cached, and compiled anew."""
+"""From the start of a process to its first forward dynamics: kernels cached, or compiled."""
 
 import json
 import os
@@ -10,31 +10,31 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-from figures import Figure, Target
+from metrics import Metric, Target
 
 PROGRAM = Path(__file__).resolve().parents[1] / "first_result.py"
 WARM_RUNS, PATIENCE_S = 7, 300.0
 
 
-def measure(full: bool) -> Iterator[Figure]:
-    """Wall time, since that is what a user waits; the median of several where kernels are cached.
+def measure(full: bool) -> Iterator[Metric]:
+    """Wall time, since that is what a user waits for; median of several runs with cached kernels.
 
     The parts' ratio is their share of the whole. Python's own bytecode is cached in both.
     """
-    _run({})  # fills the cache that the others find
+    _run({})  # fills the cache for the others
     warm = [_run({}) for _ in range(WARM_RUNS)]
     parts = {name: statistics.median(run[name] for run in warm) for name in warm[0]}
-    yield from _figures("first_result_warm", parts, 1.5)
+    yield from _metrics("first_result_warm", parts, 1.5)
     with tempfile.TemporaryDirectory() as folder:
         parts = _run({"NUMBA_CACHE_DIR": folder})
-    yield from _figures("first_result_cold", parts, 30.0)
+    yield from _metrics("first_result_cold", parts, 30.0)
 
 
-def _figures(name: str, parts: dict[str, float], bound: float) -> Iterator[Figure]:
+def _metrics(name: str, parts: dict[str, float], bound: float) -> Iterator[Metric]:
     whole = parts.pop("whole")
-    yield Figure(name, whole, "s", target=Target("value", "<=", bound))
+    yield Metric(name, whole, "s", target=Target("value", "<=", bound))
     for part, seconds in parts.items():
-        yield Figure(f"{name}_{part}", seconds, "s", "the whole", seconds / whole)
+        yield Metric(f"{name}_{part}", seconds, "s", "the whole", seconds / whole)
 
 
 def _run(variables: dict[str, str]) -> dict[str, float]:
@@ -49,10 +49,10 @@ def _run(variables: dict[str, str]) -> dict[str, float]:
         raise RuntimeError(
             f"first_result.py ended with code {done.returncode}: {done.stderr[-300:]}"
         )
-    said = json.loads(done.stdout)
-    if not said["finite"]:
+    printed = json.loads(done.stdout)
+    if not printed["finite"]:
         raise ArithmeticError("the first result is not finite")
     parts, before = {}, began
-    for name, reading in said["readings"].items():
+    for name, reading in printed["readings"].items():
         parts[name], before = reading - before, reading
     return {"whole": before - began, **parts}

@@ -1,10 +1,10 @@
-"""Inverse dynamics: the kernel against the numpy twin and Pinocchio's rnea."""
+"""Inverse dynamics: the kernel against the numpy reference and Pinocchio's rnea."""
 
 from collections.abc import Iterator
 
 import numpy as np
 import pinocchio as pin
-from figures import Figure, Target
+from metrics import Metric, Target
 from motions import COUNT, dry_vehicle, motions
 from paired import paired
 from rigid import pinocchio_model
@@ -13,11 +13,11 @@ from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import build_model, inverse_dynamics
 from uvms_dynamics.numpy_reference import newton_euler
 
-TWIN = "the numpy twin, newton_euler.py"
+NUMPY = "the numpy reference, newton_euler.py"
 RNEA = "pinocchio.rnea from Python, rigid bodies alone (ours with the water)"
 
 
-def measure(full: bool) -> Iterator[Figure]:
+def measure(full: bool) -> Iterator[Metric]:
     """All called from Python, as the controller does."""
     vehicle = load_vehicle()
     model, rigid = build_model(vehicle), pinocchio_model(dry_vehicle())
@@ -37,14 +37,14 @@ def measure(full: bool) -> Iterator[Figure]:
     timing = paired(
         lambda: [inverse_dynamics(model, *motion) for motion in arguments],
         {
-            TWIN: lambda: [newton_euler.inverse_dynamics(vehicle, *m) for m in arguments],
+            NUMPY: lambda: [newton_euler.inverse_dynamics(vehicle, *m) for m in arguments],
             RNEA: lambda: [pin.rnea(rigid, data, *m) for m in theirs],
         },
         rounds=11,
     )
     for name, reference, target in (
-        ("inverse_dynamics", TWIN, Target("ratio", "<=", 0.033)),
+        ("inverse_dynamics", NUMPY, Target("ratio", "<=", 0.033)),
         ("inverse_dynamics_from_python", RNEA, None),
     ):
         value = 1e6 * timing.seconds / COUNT
-        yield Figure(name, value, "us", reference, timing.ratio[reference], target)
+        yield Metric(name, value, "us", reference, timing.ratio[reference], target)

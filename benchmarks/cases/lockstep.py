@@ -9,7 +9,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
-from figures import Figure, Target
+from metrics import Metric, Target
 
 PROGRAM = Path(__file__).resolve().parents[1] / "graph.py"
 PATIENCE_S = 600.0
@@ -17,12 +17,12 @@ BOUNDS = {"composed": 15.0, "separate": 6.0}
 ROUNDS = 2
 
 
-def measure(full: bool) -> Iterator[Figure]:
+def measure(full: bool) -> Iterator[Metric]:
     """30 s of the manipulation (900 s, once, if `full`), recorded to a log each time.
 
-    Factors are of the running phase: without the time that processes take to start and to load
-    what numba compiled, which `..._start_up` tells. The kinds take turns; values
-    are of the best round, on a machine that others use too, ratios the median of the rounds'.
+    Factors are of the running phase, without the time that processes take to start and to load
+    compiled kernels, which `..._start_up` gives. The kinds take turns; values are of the best
+    round, because other programs share the machine, ratios the median of the rounds'.
     """
     seconds = 900.0 if full else 30.0
     rounds = [
@@ -31,15 +31,15 @@ def measure(full: bool) -> Iterator[Figure]:
     ]
     factors = {how: [one[how]["running_factor"] for one in rounds] for how in rounds[0]}
     best = max(factors["simulate"])
-    yield Figure("simulate_logged", best, "x real time", "real time", best)
+    yield Metric("simulate_logged", best, "x real time", "real time", best)
     for how, bound in BOUNDS.items():
         pairs = zip(factors[how], factors["simulate"], strict=True)
-        yield Figure(
+        yield Metric(
             f"lockstep_{how}", max(factors[how]), "x real time", "uvms simulate",
             statistics.median(a / b for a, b in pairs), Target("value", ">=", bound),
         )  # fmt: skip
-        yield Figure(f"lockstep_{how}_start_up", min(one[how]["start_up_s"] for one in rounds), "s")
-        yield Figure(
+        yield Metric(f"lockstep_{how}_start_up", min(one[how]["start_up_s"] for one in rounds), "s")
+        yield Metric(
             f"lockstep_{how}_timeouts", sum(one[how]["lockstep_timeouts"] for one in rounds), "1",
             target=Target("value", "<=", 0.0),
         )  # fmt: skip
@@ -58,6 +58,6 @@ def _run(how: str, seconds: float) -> dict:
             capture_output=True, text=True, env=environment, timeout=PATIENCE_S, check=False,
         )  # fmt: skip
     if done.returncode != 0:
-        said = [line for line in done.stderr.splitlines() if line.strip()]
-        raise RuntimeError(f"{how} ended with code {done.returncode}: {' | '.join(said[-3:])}")
+        errors = [line for line in done.stderr.splitlines() if line.strip()]
+        raise RuntimeError(f"{how} ended with code {done.returncode}: {' | '.join(errors[-3:])}")
     return json.loads(done.stdout.splitlines()[-1])

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
-from figures import Figure, Target
+from metrics import Metric, Target
 
 from uvms_bringup.loop import Loop
 from uvms_bringup.scenario import load_scenario
@@ -22,7 +22,7 @@ PARTS = {
 TICKS, WARM = 1200, 100
 
 
-def measure(full: bool) -> Iterator[Figure]:
+def measure(full: bool) -> Iterator[Metric]:
     """A part's value is its mean time in a tick; its ratio is its share of the whole tick.
 
     Processor time, medians of blocks of one simulated second; the planner works in one tick of ten.
@@ -46,7 +46,7 @@ def measure(full: bool) -> Iterator[Figure]:
     blocks = np.array(rows[WARM:]).reshape(-1, 20, 1 + len(PARTS)).mean(axis=1)
     whole, *parts = np.median(blocks, axis=0)
     factor = float(scenario.plant.control_period_s / whole)
-    yield Figure(
+    yield Metric(
         "loop",
         factor,
         "x real time",
@@ -54,10 +54,10 @@ def measure(full: bool) -> Iterator[Figure]:
         factor,
         Target("value", ">=", 30.0),
     )
-    yield Figure("loop_tick", 1e6 * whole, "us")
+    yield Metric("loop_tick", 1e6 * whole, "us")
     for part, seconds in zip(PARTS, parts, strict=True):
         share = float(seconds / whole)
-        yield Figure(f"loop_tick_{part}", 1e6 * float(seconds), "us", "the whole tick", share)
+        yield Metric(f"loop_tick_{part}", 1e6 * float(seconds), "us", "the whole tick", share)
 
 
 def _watch(target: Any, method: str, part: str, spent: dict[str, float]) -> None:

@@ -4,7 +4,7 @@ import time
 from collections.abc import Iterator
 
 import numpy as np
-from figures import Figure, Target
+from metrics import Metric, Target
 
 from uvms_core.signals import JointCommand, Odometry, ThrusterCommand
 from uvms_core.vehicle import load_vehicle
@@ -14,7 +14,7 @@ from uvms_observer import NavigationConfig, NavigationFilter
 SECONDS, BATCH = 900.0, 200
 
 
-def measure(full: bool) -> Iterator[Figure]:
+def measure(full: bool) -> Iterator[Metric]:
     """All sensors at their rates while the vehicle drifts about; the plant's own time is left out.
 
     The factor is the median over batches of 10 s, since the machine's noise comes in bursts.
@@ -33,7 +33,7 @@ def measure(full: bool) -> Iterator[Figure]:
         plant.step(ThrusterCommand(plant.stamp, thrust), JointCommand(plant.stamp, effort))
     batches = np.array(seconds[: len(seconds) // BATCH * BATCH]).reshape(-1, BATCH).sum(axis=1)
     factor = float(np.median(BATCH * config.control_period_s / batches))
-    yield Figure(
+    yield Metric(
         "navigation_filter", factor, "x real time", "real time; processor time of one core", factor,
         Target("value", ">=", 100.0),
     )  # fmt: skip
@@ -43,14 +43,14 @@ def measure(full: bool) -> Iterator[Figure]:
 def _push(stamp: int, m: int, n: int):
     t = 1e-9 * stamp
     thrust = np.zeros(m)
-    thrust[0] = 2.0 * np.sin(0.05 * t)  # to and fro
+    thrust[0] = 2.0 * np.sin(0.05 * t)  # back and forth
     return thrust, np.zeros(n)
 
 
-def _drift(error: float, estimate: Odometry) -> Iterator[Figure]:
-    """Submerged there is no fix: the position's error grows, as the filter itself expects."""
+def _drift(error: float, estimate: Odometry) -> Iterator[Metric]:
+    """Submerged there is no fix: the position's error grows, as the filter itself predicts."""
     expected = float(np.sqrt(np.trace(estimate.pose_covariance[:3, :3])))
-    yield Figure(
+    yield Metric(
         "navigation_drift_900s", float(error), "m", "the filter's own standard deviation",
         float(error) / expected, Target("ratio", "<=", 3.0),
     )  # fmt: skip

@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 
 import numpy as np
-from figures import Figure, Target
+from metrics import Metric, Target
 from paired import processor_seconds_per_call
 
 from uvms_core.signals import JointCommand, ThrusterCommand
@@ -13,7 +13,7 @@ from uvms_dynamics.simulation import Plant, PlantConfig
 PERIODS, ROUNDS = 100, 9
 
 
-def measure(full: bool) -> Iterator[Figure]:
+def measure(full: bool) -> Iterator[Metric]:
     """Runge-Kutta at 200 Hz and all sensors at their rates, under steady small commands."""
     vehicle, config = load_vehicle(), PlantConfig()
     plant = Plant(vehicle, config, seed=1)
@@ -28,7 +28,7 @@ def measure(full: bool) -> Iterator[Figure]:
     period()
     seconds = np.array([processor_seconds_per_call(period, PERIODS) for _ in range(ROUNDS)])
     factor = float(np.median(config.control_period_s / seconds))
-    yield Figure(
+    yield Metric(
         "plant_and_sensors", factor, "x real time", "real time; processor time of one core", factor,
         Target("value", ">=", 100.0),
     )  # fmt: skip

@@ -49,7 +49,7 @@ def _body(options: argparse.Namespace) -> Body:
     of_frames = {"--about": options.about is not None, "--rpy": options.rpy is not None}
     if options.vehicle is not None:
         own = {**of_files, **of_frames, "--density": options.density is not None}
-        _refuse(own, f"part {name} of a vehicle file, which says all that itself")
+        _refuse(own, f"part {name} of a vehicle file, which defines these itself")
         return vehicle_body(load_vehicle(vehicle_path(options.vehicle)), name, options.panels)
     density = SEA_WATER if options.density is None else options.density
     zero = np.zeros(3)
@@ -62,7 +62,7 @@ def _body(options: argparse.Namespace) -> Body:
         return shape_body(name, pose, density, options.panels)
     if not Path(name).suffix and not Path(name).exists():
         raise PanelMethodError(
-            f"{name!r}: no such mesh file or shape; if it is a part of a vehicle file, say which"
+            f"{name!r}: no such mesh file or shape; for a part of a vehicle file, name the file"
             " with --vehicle FILE"
         )
     return mesh_body(name, pose, density, options.panels, options.scale, options.flip)
@@ -74,7 +74,7 @@ def _refuse(given: dict[str, bool], what: str) -> None:
 
 
 def _report(body: Body, found: AddedMassEstimate) -> list[str]:
-    """What the reader should know of the numbers."""
+    """Comment lines about the numbers and their accuracy."""
     finest = body.levels[-1]
     middle = ", ".join(f"{value:.4g}" for value in _clean(finest.centroid(), finest.size))
     lines = [
@@ -96,7 +96,7 @@ def _report(body: Body, found: AddedMassEstimate) -> list[str]:
 
 
 def _frame(body: Body) -> list[str]:
-    """A doubt whether a mesh was given in the body frame."""
+    """A warning if a mesh may not be given in the body frame."""
     points = body.levels[-1].vertices
     if not body.is_mesh or ((points.min(axis=0) <= 0.0) & (points.max(axis=0) >= 0.0)).all():
         return []
@@ -104,7 +104,7 @@ def _frame(body: Body) -> list[str]:
 
 
 def _roll(body: Body, found: AddedMassEstimate) -> list[str]:
-    """What the file has about the axis and the bare shape has not."""
+    """A note if the file has a roll term that the bare shape lacks."""
     now = body.rows.get(FILE_ROW, np.zeros((6, 6)))[3, 3]
     if found.matrix[3, 3] > 1e-3 * now or now == 0.0:
         return []
@@ -120,8 +120,8 @@ def _long_edges(body: Body) -> list[str]:
     if not body.is_mesh or longest < 2.0 * LONG * mean:
         return []
     return [
-        f"some panels are long and thin: an edge of {longest:.2g} m where {mean:.2g} m is usual;",
-        "a mesh of compact triangles, or a larger --panels, is surer",
+        f"some panels are long and thin: an edge of {longest:.2g} m where {mean:.2g} m is typical;",
+        "a mesh of compact triangles, or a larger --panels, is more accurate",
     ]
 
 
@@ -130,7 +130,7 @@ def _remarks(found: AddedMassEstimate) -> list[str]:
     if found.change is None:
         count = 4 * found.solved[-1][0]
         lines += [
-            f"convergence: not estimated; --panels {count} would do it"
+            f"convergence: not estimated; --panels {count} would estimate it"
             f" ({_gigabytes(count)}), or a coarser mesh"
         ]
     else:
@@ -138,7 +138,7 @@ def _remarks(found: AddedMassEstimate) -> list[str]:
         lines += [
             f"convergence: extrapolation changes {TERMS[worst]} most, by"
             f" {100.0 * found.change[worst]:.2g} %;",
-            "what is left is a part of that for a smooth body, up to twice that with sharp edges",
+            "the error left is smaller for a smooth body, up to twice as large with sharp edges",
         ]
     if found.clipped > 1e-6:
         lines += [f"a negative eigenvalue, {found.clipped:.1e} of the largest, was set to zero"]
@@ -156,7 +156,7 @@ def _row(name: str, values: Array) -> str:
 
 
 def _clean(values: Array, size: float) -> Array:
-    """Rounding noise as the zero it is."""
+    """Values with rounding noise set to zero."""
     return np.where(np.abs(values) < 1e-8 * size, 0.0, values)
 
 

@@ -12,4 +12,4 @@ class ScenarioError(BringupError):
 
 
 class RunError(BringupError):
-    """A run could not be started or did not come to its end."""
+    """A run could not be started or did not complete."""

@@ -1,4 +1,4 @@
-"""How a run's time passes."""
+"""The pace of a run: lockstep or real time."""
 
 from dataclasses import dataclass
 

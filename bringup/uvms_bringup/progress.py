@@ -1,4 +1,4 @@
-"""What a run shows on the screen while it goes on."""
+"""Progress of a run on the terminal."""
 
 import sys
 import time
@@ -26,7 +26,7 @@ class ProgressLine:
             self._task = self._bar.add_task("run", total=to_seconds(end), speed="", note="")
 
     def show(self, stamp: int, note: str) -> None:
-        """Say how far the run is; cheap when called often."""
+        """Show how far the run is; cheap when called often."""
         now = time.monotonic()
         if self._began is None and stamp > 0:
             self._began = now, stamp
@@ -36,7 +36,7 @@ class ProgressLine:
         self._print(stamp, note)
 
     def end(self) -> None:
-        """Leave the last state on the screen."""
+        """Stop the bar, leaving its last state on the screen."""
         if self._bar is not None:
             self._bar.stop()
 

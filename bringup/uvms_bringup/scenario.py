@@ -1,130 +1,75 @@
-"""A scenario: what a run is made of, read from a YAML file that a user can copy."""
+"""A scenario: everything that a run depends on, read from a YAML file that a user can copy."""
 
 import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator
 
 from uvms_bringup.errors import ScenarioError
+from uvms_bringup.goal import Goal
 from uvms_bringup.locate import known_scenarios
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
 from uvms_core.errors import UvmsError
 from uvms_core.plugin import PluginConfig
-from uvms_core.signals import Array, JointGoal, PathGoal
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
+from uvms_core.vehicle.postures import STOWED
 from uvms_core.yaml_text import parse_yaml, read_yaml
-from uvms_dynamics import build_model, end_effector
-from uvms_dynamics.kernels.rotations import matrix_to_quat, rpy_to_quat
 from uvms_dynamics.simulation import PlantConfig
-from uvms_dynamics.simulation.plant.config import initial_joints
+from uvms_dynamics.simulation.plant.config import initial_joints_deg
 from uvms_observer import NavigationConfig, ObserverConfig
-from uvms_planner import PathSpec, PlannerConfig
+from uvms_planner import PlannerConfig
 
 VEHICLE_PREFIX = "vehicle."
 LONGEST_RUN_S = 1e6
 
 
-class JointMotion(Config):
-    """A motion of the joints alone, from rest to rest between its points."""
-
-    times_s: tuple[float, ...] = Field(
-        min_length=1, description="s after the start, of each point; increasing, > 0"
-    )
-    positions_deg: tuple[tuple[float, ...], ...] = Field(description="joint angles at each point")
-
-    @model_validator(mode="after")
-    def _is_table(self) -> "JointMotion":
-        pairs = zip((0.0, *self.times_s), self.times_s, strict=False)
-        if not all(before < after for before, after in pairs):
-            raise ValueError(f"times_s must be > 0 and increasing, are {list(self.times_s)}")
-        if len(self.positions_deg) != len(self.times_s):
-            raise ValueError(
-                f"positions_deg has {len(self.positions_deg)} rows for {len(self.times_s)} times"
-            )
-        lengths = [len(row) for row in self.positions_deg]
-        if len(set(lengths)) > 1 or not lengths[0]:
-            raise ValueError(
-                "every row of positions_deg needs as many values, one a joint;"
-                f" the rows have {', '.join(map(str, lengths))}"
-            )
-        return self
-
-    def check(self, vehicle: Vehicle) -> None:
-        """Raise ScenarioError unless every row has a value for each joint of the vehicle."""
-        if (count := len(self.positions_deg[0])) != vehicle.n_joints:
-            raise ScenarioError(
-                f"goal.joints.positions_deg: its rows have {count} values, the vehicle"
-                f" {vehicle.name!r} has {vehicle.n_joints} joints: {', '.join(vehicle.joint_names)}"
-            )
-
-    def goal(self) -> JointGoal:
-        """The goal in SI units."""
-        return JointGoal(np.array(self.times_s), np.deg2rad(np.array(self.positions_deg)))
-
-
-class Goal(Config):
-    """What is asked of the planner: a path of the end effector, a joint motion, or nothing."""
-
-    path: PathSpec | None = Field(None, description="path of the end effector from where it starts")
-    joints: JointMotion | None = Field(None, description="motion of the joints")
-
-    @model_validator(mode="after")
-    def _one_of_them(self) -> "Goal":
-        if self.path is not None and self.joints is not None:
-            raise ValueError("a goal has `path` or `joints`, not both")
-        return self
-
-    def build(self, vehicle: Vehicle, plant: PlantConfig) -> PathGoal | JointGoal | None:
-        """The goal of a run that starts as `plant` says."""
-        if self.path is not None:
-            return self.path.goal(*start_of_end_effector(vehicle, plant))
-        if self.joints is not None:
-            self.joints.check(vehicle)
-            return self.joints.goal()
-        return None
-
-    @property
-    def duration_s(self) -> float:
-        """How long the goal takes."""
-        if self.path is not None:
-            return self.path.duration_s
-        return self.joints.times_s[-1] if self.joints is not None else 0.0
-
-
 class Scenario(Config):
-    """Everything that a run depends on, with the seed and the vehicle."""
+    """Everything that a run depends on: vehicle, seed, plant, parts of the loop and goal."""
 
-    scenario: str = Field(max_length=100, description="name, as in the file's name")
-    description: str = Field("", description="one sentence for the user")
-    vehicle: str = Field("reference_auv", description="vehicle file: a path, or a name in config/")
-    vehicle_overrides: dict[str, Any] = Field(
-        default_factory=dict, description="values of the vehicle file to change: dotted path: value"
+    scenario: str = Field(
+        max_length=100, description="name of the scenario; by default that of its file"
     )
-    seed: int = Field(1, ge=0, le=2**63 - 1, description="of every random number of the run")
+    description: str = Field("", description="one sentence that is printed when the run begins")
+    vehicle: str = Field(
+        "reference_auv",
+        description="name of a vehicle that comes with the project, or path of a vehicle file;"
+        " relative to the scenario's file, on the command line to the working directory",
+    )
+    vehicle_overrides: dict[str, Any] = Field(
+        default_factory=dict,
+        description="values that replace those of the vehicle file, by dotted path, such as"
+        " `hull.mass_kg: 190`",
+    )
+    seed: int = Field(1, ge=0, le=2**63 - 1, description="seed of all random numbers of the run")
     duration_s: float = Field(gt=0.0, le=LONGEST_RUN_S, description="simulated time of the run, s")
-    plant: PlantConfig = PlantConfig()
+    plant: PlantConfig = Field(
+        PlantConfig(), description="the simulated vehicle: integration, start and current"
+    )
     navigation: NavigationConfig = Field(
         NavigationConfig(),
-        description="its initial_position_m is the plant's where the scenario gives none",
+        description="navigation filter; its initial_position_m is the plant's unless given",
     )
-    observer: ObserverConfig = ObserverConfig()
-    planner: PlannerConfig = PlannerConfig()
-    control: ControlConfig = ControlConfig()
-    allocation: AllocatorConfig = AllocatorConfig()
-    goal: Goal = Goal()
+    observer: ObserverConfig = Field(ObserverConfig(), description="disturbance observer")
+    planner: PlannerConfig = Field(PlannerConfig(), description="motion planner")
+    control: ControlConfig = Field(ControlConfig(), description="vehicle and arm controllers")
+    allocation: AllocatorConfig = Field(
+        AllocatorConfig(), description="distribution of the wrench over the thrusters"
+    )
+    goal: Goal = Field(
+        Goal(), description="what the planner is asked for; none: to hold the pose of the start"
+    )
 
     @field_validator("scenario")
     @classmethod
     def _names_a_folder(cls, name: str) -> str:
         if not re.fullmatch(r"\w[\w .+-]*", name):
             raise ValueError(
-                "it becomes a part of a folder's name: begin with a letter or digit, and go on with"
+                "it becomes part of a folder's name: start with a letter or digit, then use"
                 " letters, digits, spaces and the signs _ . + -"
             )
         return name
@@ -140,8 +85,8 @@ class Scenario(Config):
 
     @field_validator("navigation")
     @classmethod
-    def _begins_at_the_plant(cls, own: NavigationConfig, info: ValidationInfo) -> NavigationConfig:
-        """Where the mission starts is known, unless the scenario tries what a wrong start does."""
+    def _starts_at_the_plant(cls, own: NavigationConfig, info: ValidationInfo) -> NavigationConfig:
+        """The filter knows where the plant starts, unless the scenario tries a wrong start."""
         plant = info.data.get("plant")
         if plant is None or "initial_position_m" in own.model_fields_set:
             return own
@@ -158,30 +103,31 @@ class Scenario(Config):
         check_start(vehicle, self.plant, self.planner)
         return vehicle
 
-
-def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, Array]:
-    """Position (3,) m and quaternion (4,) of the tool in map_ned at the start of a run."""
-    position, R_world_tool = end_effector(
-        build_model(vehicle),
-        np.array(plant.initial_position_m, dtype=float),
-        rpy_to_quat(*np.deg2rad(np.array(plant.initial_rpy_deg, dtype=float))),
-        initial_joints(vehicle, plant),
-    )
-    return position, matrix_to_quat(R_world_tool)
+    def for_vehicle(self, vehicle: Vehicle) -> "Scenario":
+        """The same scenario in numbers for this vehicle: no posture names, and the path scaled."""
+        angles = initial_joints_deg(vehicle, self.plant)
+        start = {"initial_posture": STOWED, "initial_joints_deg": angles}
+        goal = self.goal.for_vehicle(vehicle, self.plant)
+        return self.model_copy(update={"plant": self.plant.model_copy(update=start), "goal": goal})
 
 
 def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Scenario:
     """The scenario of that name or file, with `PATH=VALUE` settings and top-level changes applied.
+
+    Paths in the file are relative to the file, those in settings and changes to the working
+    directory; both become absolute.
 
     Raises:
         ScenarioError: it does not exist, or a value is not allowed; the message says which and why.
     """
     path = _scenario_path(name)
     data = _read_scenario(path)
+    _make_absolute(data, path.parent)
     data.setdefault("scenario", path.stem)
     data.update({key: value for key, value in changes.items() if value is not None})
     for setting in settings:
         _apply(data, setting)
+    _make_absolute(data, Path())
     return validated(Scenario, data, f"scenario {path.name}", ScenarioError)
 
 
@@ -203,6 +149,14 @@ def _read_scenario(path: Path) -> dict[str, Any]:
     if not isinstance(data, dict):
         raise ScenarioError(f"scenario {path}: a scenario is a mapping of names to values")
     return data
+
+
+def _make_absolute(data: dict[str, Any], folder: Path) -> None:
+    """Let every relative path to a vehicle file start at `folder`."""
+    for group, name in ((data, "vehicle"), (data.get("goal"), "path_made_for")):
+        value = group.get(name) if isinstance(group, dict) else None
+        if isinstance(group, dict) and isinstance(value, str) and value.endswith(FILE_SUFFIXES):
+            group[name] = str((folder / value).resolve())
 
 
 def _apply(data: dict[str, Any], setting: str) -> None:

@@ -10,8 +10,6 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
 from uvms_analysis.log.writer import LogWriter
@@ -25,8 +23,10 @@ from uvms_bringup.simulate import simulate
 from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
+from uvms_core.yaml_text import dump_yaml
 
 Goal = PathGoal | JointGoal | None
+VEHICLE_FILE = "vehicle.yaml"
 Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
 
 
@@ -60,7 +60,7 @@ class Stopwatch:
 
 @dataclass(frozen=True)
 class Session:
-    """A run that is about to begin."""
+    """A run that is ready to start."""
 
     scenario: Scenario
     vehicle: Vehicle
@@ -82,7 +82,7 @@ class Session:
 
     def run_graph(self, pace: Pace, composed: bool) -> dict[str, Any]:
         """`uvms run`: returns the summary."""
-        from uvms_bringup.ros.run import run_graph  # ROS is wanted here only
+        from uvms_bringup.ros.run import run_graph  # only this needs ROS
 
         def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
             return run_graph(
@@ -100,7 +100,7 @@ class Session:
         return self._record(run)
 
     def _record(self, run: Run) -> dict[str, Any]:
-        config = yaml.safe_dump(self.scenario.model_dump(mode="json"), sort_keys=False)
+        config = effective_config(self.scenario)
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
         line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
@@ -135,7 +135,7 @@ class Session:
 
     def _describe(self, log: LogWriter, config: str) -> None:
         log.attach("config.yaml", config, "application/yaml")
-        log.attach("vehicle.yaml", dump_vehicle(self.vehicle), "application/yaml")
+        log.attach(VEHICLE_FILE, dump_vehicle(self.vehicle), "application/yaml")
         if isinstance(self.goal, PathGoal):
             log.attach("path.json", path_to_json(self.goal), "application/json")
         log.metadata(
@@ -168,6 +168,7 @@ def prepare(
         RunError: the folder cannot be made, or it holds another run already.
     """
     vehicle = scenario.load_vehicle()
+    scenario = scenario.for_vehicle(vehicle)
     goal = scenario.goal.build(vehicle, scenario.plant)
     folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
     if (folder / "run.mcap").exists():
@@ -179,9 +180,18 @@ def prepare(
     return Session(scenario, vehicle, goal, folder.resolve(), pace, command, cast or Cast())
 
 
+def effective_config(scenario: Scenario) -> str:
+    """The scenario as YAML that runs again with the `vehicle.yaml` beside it, wherever they are."""
+    own = scenario.model_copy(update={"vehicle": VEHICLE_FILE, "vehicle_overrides": {}})
+    changes = (f"{path}={value}" for path, value in scenario.vehicle_overrides.items())
+    origin = " with ".join(filter(None, (scenario.vehicle, ", ".join(changes))))
+    origin = " ".join(origin.split())  # a comment is one line
+    return f"# {VEHICLE_FILE}: {origin}\n{dump_yaml(own.model_dump(mode='json'))}"
+
+
 def vehicle_file(folder: Path, vehicle: Vehicle) -> Path:
     """Write the vehicle as the nodes of a run read it: with the scenario's overrides."""
-    path = folder / "vehicle.yaml"
+    path = folder / VEHICLE_FILE
     path.write_text(dump_vehicle(vehicle), encoding="utf-8")
     return path
 

@@ -23,11 +23,11 @@ def simulate(
     progress: Progress = lambda stamp, text: None,
     observe: Callable[[LoopTick], None] = lambda tick: None,
 ) -> bool:
-    """Run a scenario; True if it came to its end.
+    """Run a scenario; True if it was completed.
 
     Args:
         goal: what the planner is asked for, once the loop is closed at the first tick.
-        log: where every signal goes, None for nowhere.
+        log: receives every signal; None: no log.
         progress: called with the stamp in ns and a line of text, at each tick.
         observe: called with every tick.
 

@@ -1,4 +1,4 @@
-"""What must fit together before a run can start: periods, and the start with the vehicle."""
+"""Checks before a run starts: do the periods fit together, and does the start fit the vehicle?"""
 
 from uvms_bringup.errors import ScenarioError
 from uvms_core.errors import ConfigError
@@ -12,11 +12,11 @@ from uvms_planner import PlannerConfig
 
 
 def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
-    """Check what vehicle, plant and planner only together can have wrong.
+    """Check vehicle, plant and planner against each other.
 
     Raises:
-        ScenarioError: a period is no multiple of the one that it must go by, the integration step
-            is unstable with the vehicle, or the joints cannot start where they should.
+        ScenarioError: a period is not a multiple of the one that it depends on, the integration
+            step is unstable with the vehicle, or the joints cannot start where the plant says.
     """
     _check_periods(vehicle, plant, planner)
     try:
@@ -37,8 +37,8 @@ def _check_periods(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig)
     for sensor in sensors.values():
         _check_multiple(*sensor, *step)
     _check_multiple(*control, *step)
-    # The plant stops at control ticks for its commands, and an IMU sample of the tick's own stamp
-    # is what sets the tick going through the graph.
+    # The plant waits for its commands at control ticks, and the IMU sample with the stamp of the
+    # tick is what triggers the nodes.
     _check_multiple(*control, *sensors[INERTIAL.name])
     _check_multiple("planner.step_s", planner.step_s, *control)
 

@@ -1,4 +1,4 @@
-"""`make bench`: the form of its output, without measuring much."""
+"""`make bench`: the format of its output, without measuring much."""
 
 import json
 import subprocess
@@ -27,7 +27,7 @@ def bench(*arguments):
 
 @pytest.fixture
 def module(monkeypatch):
-    """Imports a module of the benchmarks, which are no package; all are forgotten afterwards."""
+    """Imports a module of the benchmarks, which are not a package; all are unloaded afterwards."""
     monkeypatch.syspath_prepend(str(PROGRAM.parent))
     yield import_module
     own = {path.stem for path in PROGRAM.parent.glob("*.py")} | {"cases"}
@@ -36,11 +36,11 @@ def module(monkeypatch):
 
 
 @pytest.fixture
-def figures(module):
-    return module("figures")
+def metrics(module):
+    return module("metrics")
 
 
-def test_list_tells_what_every_file_measures():
+def test_list_shows_what_every_file_measures():
     done = bench("--list")
     assert done.returncode == 0, done.stderr
     listed = {line.split()[0] for line in done.stdout.splitlines()}
@@ -61,23 +61,23 @@ def test_every_line_is_one_object_with_the_agreed_keys(name):
     assert done.returncode == 0, done.stderr
     found = [json.loads(line) for line in done.stdout.splitlines()]
     assert found
-    assert all(list(figure) == KEYS for figure in found)
-    assert all(figure["met"] in (True, False, None) for figure in found)
+    assert all(list(metric) == KEYS for metric in found)
+    assert all(metric["met"] in (True, False, None) for metric in found)
 
 
 @pytest.mark.parametrize(
     ("field", "sign", "bound", "met"),
     [("ratio", ">=", 2.0, True), ("ratio", ">=", 2.1, False), ("value", "<=", 4.0, False)],
 )
-def test_targets_are_judged_by_the_field_that_they_name(figures, field, sign, bound, met):
-    target = figures.Target(field, sign, bound)
-    line = figures.Figure("a", 5.0, "us", "b", 2.0, target).line()
+def test_targets_are_judged_by_the_field_that_they_name(metrics, field, sign, bound, met):
+    target = metrics.Target(field, sign, bound)
+    line = metrics.Metric("a", 5.0, "us", "b", 2.0, target).line()
     assert json.loads(line)["met"] is met
     assert json.loads(line)["target"] == f"{field} {sign} {bound:g}"
 
 
-def test_what_was_not_measured_meets_no_target(figures):
-    line = figures.Figure("a", 5.0, "us", target=figures.Target("ratio", ">=", 0.0)).line()
+def test_what_was_not_measured_meets_no_target(metrics):
+    line = metrics.Metric("a", 5.0, "us", target=metrics.Target("ratio", ">=", 0.0)).line()
     assert json.loads(line)["met"] is False
 
 
@@ -113,7 +113,7 @@ def test_all_engines_have_the_same_rigid_chain(module, n):
 
 
 @pytest.mark.parametrize("fluid", ["inertia_box", "ellipsoid"])
-def test_the_water_of_mujoco_resists_every_motion(module, fluid):
+def test_mujocos_fluid_opposes_every_motion(module, fluid):
     chains, mujoco_chain = module("chains"), module("mujoco_chain")
     vehicle, motions = chains.chain(4), module("motions").motions(4, count=4)
     wet, dry = (
@@ -128,7 +128,7 @@ def test_the_water_of_mujoco_resists_every_motion(module, fluid):
         assert np.concatenate([m.nu, m.q_dot]) @ mass @ added < -0.1
 
 
-def test_chains_feel_all_of_the_water(module):
+def test_chains_have_full_hydrodynamics(module):
     for n in (4, 32):
         vehicle = module("chains").chain(n)
         for body in (vehicle.hull, *vehicle.arm.links):
@@ -139,10 +139,10 @@ def test_chains_feel_all_of_the_water(module):
         assert sum(cylinder.stations for cylinder in cylinders) == 3 * n
 
 
-def test_simulated_chains_stay_calm_and_do_not_depend_on_the_step(module):
-    """What is timed is a plain swimming motion, resolved by its step, not one that blows up."""
+def test_simulated_chains_stay_slow_and_do_not_depend_on_the_step(module):
+    """What is timed is an ordinary swimming motion, resolved by its step, not a diverging one."""
     compiled, chains = module("compiled"), module("chains")
-    motion = module("motions").calm_motion(16)
+    motion = module("motions").slow_motion(16)
     state = compiled.stepping(chains.chain(16), motion)().copy()
     fine = compiled.stepping(chains.chain(16), motion, halvings=1)().copy()
     assert np.max(np.abs(state)) < 2.0

@@ -1,10 +1,24 @@
 """The packages describe themselves alike to ROS and to pip, and what they promise is there."""
 
 import ast
-import xml.etree.ElementTree as ElementTree
+import re
+from collections import Counter
+from configparser import ConfigParser
 
 import pytest
-from project import CODE, INTERFACES, PACKAGES, ROOT, imports, modules, python_files
+from project import (
+    CODE,
+    INTERFACES,
+    PACKAGES,
+    ROOT,
+    imports,
+    is_ros,
+    manifest,
+    modules,
+    python_files,
+    required,
+    setup_arguments,
+)
 
 LONGEST = 400
 EXECUTABLES = {
@@ -16,27 +30,6 @@ EXECUTABLES = {
     "uvms_analysis": set(),
     "uvms_bringup": {"uvms", "state_publisher"},
 }
-
-
-def setup_arguments(folder):
-    """Keyword arguments of setup() that are written as constants, and PACKAGE as `name`."""
-    tree = ast.parse((folder / "setup.py").read_text())
-    call = next(
-        node
-        for node in ast.walk(tree)
-        if isinstance(node, ast.Call) and getattr(node.func, "id", "") == "setup"
-    )
-    constants = {}
-    for keyword in call.keywords:
-        try:
-            constants[keyword.arg] = ast.literal_eval(keyword.value)
-        except ValueError:
-            continue
-    return constants
-
-
-def manifest(folder):
-    return ElementTree.parse(folder / "package.xml").getroot()
 
 
 def test_all_packages_have_one_version():
@@ -83,7 +76,7 @@ def test_manifest_names_every_ros_package_that_the_code_imports(package, folder)
         name
         for file in modules(package)
         for name in imports(file)
-        if name.endswith("_msgs") or name.startswith("uvms_") or name in ("rclpy", "std_srvs")
+        if is_ros(name) or name.startswith("uvms_")
     }
     assert ros - {package} <= named
 
@@ -93,6 +86,42 @@ def test_every_folder_with_code_is_a_package(package):
     """find_packages skips folders without __init__.py, and an installation would lack them."""
     folders = {file.parent for file in modules(package)}
     assert [str(folder) for folder in folders if not (folder / "__init__.py").is_file()] == []
+
+
+@pytest.mark.parametrize(("package", "folder"), PACKAGES.items())
+def test_colcon_test_finds_the_tests(package, folder):
+    """It starts pytest where the extra `test` names it, in the package's folder."""
+    parser = ConfigParser()
+    parser.read(folder / "setup.cfg")
+    place = folder / parser["tool:pytest"]["testpaths"]
+    assert place.resolve() == ROOT / "tests" / package
+    assert list(place.glob("test_*.py"))
+    assert "pytest" in required(package, "test")
+
+
+def test_addresses_are_no_placeholders():
+    """The format of a manifest wants an address; it may not look like a person's."""
+    texts = {
+        path: path.read_text(encoding="utf-8")
+        for pattern in ("src/*/package.xml", "src/*/setup.py", "bringup/*.xml", "bringup/setup.py",
+                        "tools/*/package.xml", "*.md", "*.toml", "*.cff")
+        for path in ROOT.glob(pattern)
+    }  # fmt: skip
+    assert len(texts) > 15
+    found = {
+        address for text in texts.values() for address in re.findall(r"[\w.+-]+@[\w.-]+", text)
+    }
+    assert found <= {"noreply@github.com"}
+
+
+HOLDS_ONE_THING = {"checks", "config", "errors", "gate", "helpers", "types", "utils"}
+
+
+@pytest.mark.parametrize("package", PACKAGES)
+def test_general_names_occur_once_in_a_package(package):
+    """Else a file's name does not say what it holds."""
+    names = Counter(file.stem for file in modules(package) if file.stem in HOLDS_ONE_THING)
+    assert {name: count for name, count in names.items() if count > 1} == {}
 
 
 def test_files_stay_short():

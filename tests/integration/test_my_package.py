@@ -10,7 +10,6 @@ from example_package import SOURCE, installed, uvms
 from uvms_analysis.log.read import RunLog
 from uvms_core import topics
 from uvms_core.vehicle import load_vehicle
-from uvms_core.yaml_text import parse_yaml
 from uvms_dynamics import build_model, mass_matrix, restoring_wrench
 
 STEP = 10
@@ -78,7 +77,7 @@ def test_the_control_law_steers_the_vehicle(law, site, tmp_path):
     assert np.abs(expected[:, :3]).max() > 1.0
     np.testing.assert_allclose(commanded, expected, atol=1e-3 * np.abs(expected).max())
     assert summary["vehicle_error_m"]["max"] < 0.05
-    control = parse_yaml(log.text("config.yaml"), "config.yaml")["control"]
+    control = log.configuration()["control"]
     assert control["law"] == law
     assert control["parameters"] == {"bandwidth": 0.7, "arm_bandwidth": 6.0, "damping_ratio": 1.0}
 

@@ -118,6 +118,7 @@ def test_configuration_is_shared(workspace):
     shared = workspace / "share/uvms_bringup/config/scenarios"
     scenarios = {file.name for file in (ROOT / "bringup/config/scenarios").glob("*.yaml")}
     assert {file.name for file in shared.iterdir()} == scenarios
+    assert (workspace / "share/uvms_bringup/launch/uvms.launch.py").is_file()
     command = "python -c 'from uvms_core.vehicle import locate; print(*locate.known_vehicles())'"
     assert in_workspace(workspace, command).split() == ["bluerov2_alpha5", "reference_auv"]
 

@@ -1,5 +1,7 @@
 """The external package on the graph: its law in our node, and its own node on plain rclpy."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 from example_package import installed, uvms
@@ -22,8 +24,6 @@ from uvms_dynamics import build_model, restoring_wrench
 
 SETTINGS = ("--set", "control.law=my_law", "--set", "control.parameters.bandwidth=0.9")
 SCENARIO = ("arm_swing", "--duration", "3")
-STEP = 50_000_000
-TICKS = 5
 VEHICLE = load_vehicle()
 
 
@@ -103,21 +103,19 @@ def test_the_node_on_plain_rclpy_answers_every_odometry_in_lockstep():
     def make() -> MyController:
         return MyController(parameter_overrides=parameters(bandwidth=1.0))
 
+    stamps = [0, 50_000_000, 100_000_000]
     with graph_of(make, lambda: Peer(OUTPUTS, INPUTS)) as (spinner, (node, peer)):
         wrenches = peer.heard[topics.WRENCH_COMMAND.name]
         efforts = peer.heard[topics.JOINT_COMMAND.name]
         spin_until(spinner, lambda: all(node.count_publishers(t.name) for t in INPUTS))
         spin_until(spinner, lambda: all(node.count_subscribers(t.name) for t in OUTPUTS))
         peer.say(topics.REFERENCE, reference(), VEHICLE.joint_names)
-        for tick in range(TICKS):
-            peer.say(topics.ODOMETRY, odometry(tick * STEP))
-            peer.say(topics.JOINT_STATES, joints(tick * STEP), VEHICLE.joint_names)
-        spin_until(spinner, lambda: len(wrenches) == len(efforts) == TICKS)
-    assert (
-        [w.stamp for w in wrenches]
-        == [e.stamp for e in efforts]
-        == [tick * STEP for tick in range(TICKS)]
-    )
+        for stamp in stamps:  # in lockstep the next tick begins when this one is answered
+            peer.say(topics.ODOMETRY, odometry(stamp))
+            peer.say(topics.JOINT_STATES, joints(stamp), VEHICLE.joint_names)
+            spin_until(spinner, partial(answered, wrenches, efforts, stamp))
+    assert [signal.stamp for signal in wrenches] == stamps
+    assert [signal.stamp for signal in efforts] == stamps
     at_rest = restoring_wrench(build_model(VEHICLE), LEVEL, stowed())
     for wrench in wrenches:  # on the reference only the weight in water is left to carry
         np.testing.assert_allclose(wrench.wrench, -at_rest, atol=1e-9)
@@ -125,6 +123,10 @@ def test_the_node_on_plain_rclpy_answers_every_odometry_in_lockstep():
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 POSITION = np.array([0.0, 0.0, 10.0])
+
+
+def answered(wrenches: list, efforts: list, stamp: int) -> bool:
+    return all(heard and heard[-1].stamp == stamp for heard in (wrenches, efforts))
 
 
 def stowed() -> np.ndarray:

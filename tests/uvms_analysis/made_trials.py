@@ -36,8 +36,10 @@ def made_trial(vehicle: Vehicle, seed: int, noise_deg: float = 0.0, arm: bool = 
     motion, index = joint_motion(blank)
     start = measured_start(blank).state
     start[2] = rng.uniform(0.4, 1.0)
-    below = start[2] - load.reference_depth
-    moment = first_moment(model, motion.q[0]) + load.moment_per_m * below
+    moment = first_moment(model, motion.q[0])
+    if (tether := vehicle.tether) is not None:
+        below = start[2] - tether.reference_depth_m
+        moment = moment + np.array(tether.moment_per_m_nm) * below
     roll, pitch = np.radians(tilt_deg(moment / np.linalg.norm(moment)))
     start[3:7] = rpy_to_quat(roll, -pitch, 0.3)
     states = float_freely(model, start, motion, load)[index]

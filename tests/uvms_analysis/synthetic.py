@@ -1,4 +1,4 @@
-"""A log of a run that never took place, whose figures are known beforehand.
+"""A synthetic log whose metrics are known beforehand.
 
 The vehicle follows the path as a stiff body, arm at rest but for its last joint (a roll about the
 tool's own axis), so that the end effector moves exactly as the vehicle does. On top of the path
@@ -80,7 +80,7 @@ class Synthetic:
         roll = self.known.roll_deg * np.sin(2 * np.pi * time / 4.0)
         return rpy_to_quat(np.deg2rad(roll), np.deg2rad(self.known.pitch_deg), 0.0)
 
-    def wanted(self, time: float) -> np.ndarray:
+    def target(self, time: float) -> np.ndarray:
         return self.curve.positions(np.array([time - self.known.start]))[0]
 
     def error(self, time: float) -> np.ndarray:
@@ -89,7 +89,7 @@ class Synthetic:
     def position(self, time: float) -> np.ndarray:
         """Where the vehicle is, so that the end effector is where it should be plus the error."""
         lever = self.tool(np.zeros(3), self.attitude(time))
-        return self.wanted(time) + self.error(time) - lever
+        return self.target(time) + self.error(time) - lever
 
     def odometry(self, stamp: int, time: float, offset: np.ndarray) -> Odometry:
         variance = np.diag([1e-4, 4e-4, 1e-4, 1e-6, 1e-6, 1e-6])
@@ -117,7 +117,7 @@ class Synthetic:
             joints,
             0.0 * joints,
             0.0 * joints,
-            np.array([self.wanted(time + t) for t in times]),
+            np.array([self.target(time + t) for t in times]),
         )
 
     def joints(self, stamp: int, time: float) -> JointStates:

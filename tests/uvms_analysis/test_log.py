@@ -1,4 +1,4 @@
-"""Logs: independent readers open them, a killed writer loses little, damage is told."""
+"""Logs: independent readers open them, a killed writer loses little, damage is reported."""
 
 import os
 import signal
@@ -23,7 +23,7 @@ from uvms_analysis.log.recover import recover
 from uvms_analysis.log.schema import qos_from_yaml, qos_yaml
 from uvms_analysis.log.writer import CHUNK_SIZE, LogWriter
 from uvms_core import topics
-from uvms_core.cdr import type_hash
+from uvms_core.cdr import codec, type_hash
 from uvms_core.signals import PathGoal, Wrench
 from uvms_core.topics import LATCHED, Qos
 
@@ -153,7 +153,9 @@ def test_a_topic_that_is_not_there_is_named(log_file):
 
 def test_one_topic_has_one_type(tmp_path):
     with LogWriter(tmp_path / "a.mcap") as log:
-        log.declare("/a", "std_msgs/msg/String", "")
+        log.write(
+            "/a", "std_msgs/msg/String", "", 0, codec("std_msgs/msg/String").encode({"data": ""})
+        )
         with pytest.raises(LogError, match="/a is std_msgs/msg/String, not std_msgs/msg/Empty"):
             log.write("/a", "std_msgs/msg/Empty", "", 0, b"")
 
@@ -194,17 +196,17 @@ def test_a_writer_killed_in_mid_write_loses_only_the_open_chunk(tmp_path):
     while int(process.stdout.readline()) < 3000:
         pass
     process.send_signal(signal.SIGKILL)
-    told = 3000
+    printed = 3000
     for line in process.stdout:
-        told = int(line)
+        printed = int(line)
     assert process.wait() == -signal.SIGKILL
     log = RunLog.open(path)
-    assert log.fault == "its writer did not come to its end, or its end is damaged"
+    assert log.fault == "the writer was stopped early, or the end of the file is damaged"
     assert log.text("config.yaml") == "seed: 3"
     stamps = [wrench.stamp for wrench in log.signals(topics.WRENCH_COMMAND)]
     assert stamps == [k * 50_000_000 for k in range(len(stamps))]
     # A message takes about 111 bytes of a chunk.
-    assert len(stamps) >= told - CHUNK_SIZE // 100
+    assert len(stamps) >= printed - CHUNK_SIZE // 100
     recovery = recover(path, tmp_path / "whole.mcap")
     assert recovery.message_count == len(stamps)
     whole = RunLog.open(tmp_path / "whole.mcap")
@@ -232,7 +234,7 @@ def test_a_truncated_log_gives_the_chunks_that_are_whole(tmp_path, keep):
     data = (tmp_path / "a.mcap").read_bytes()
     (tmp_path / "cut.mcap").write_bytes(data[: max(int(keep * len(data)), 60)])
     log = RunLog.open(tmp_path / "cut.mcap")
-    assert log.fault == "its writer did not come to its end, or its end is damaged"
+    assert log.fault == "the writer was stopped early, or the end of the file is damaged"
     stamps = [stamp for _, stamp, _ in log.raw()]
     assert stamps == [k * 50_000_000 for k in range(len(stamps))]
     # The index at the end takes its share of the bytes.
@@ -245,7 +247,7 @@ def test_a_log_without_its_end_still_has_every_message(tmp_path, lost):
     data = (tmp_path / "a.mcap").read_bytes()
     (tmp_path / "cut.mcap").write_bytes(data[:-lost])
     log = RunLog.open(tmp_path / "cut.mcap")
-    assert log.fault == "its writer did not come to its end, or its end is damaged"
+    assert log.fault == "the writer was stopped early, or the end of the file is damaged"
     assert len(log.signals(topics.WRENCH_COMMAND)) == 500
 
 
@@ -259,8 +261,8 @@ def test_a_damaged_chunk_is_left_out(tmp_path):
     assert 1850 < len(log.signals(topics.WRENCH_COMMAND)) < 2000
 
 
-@pytest.mark.parametrize("content", [b"", b"hello", b"hello, this is no log at all"])
-def test_what_is_no_log_is_refused(tmp_path, content):
+@pytest.mark.parametrize("content", [b"", b"hello", b"hello, this is not a log"])
+def test_other_files_are_refused(tmp_path, content):
     (tmp_path / "a.mcap").write_bytes(content)
     with pytest.raises(LogError, match="is not an MCAP file"):
         RunLog.open(tmp_path / "a.mcap")
@@ -286,6 +288,6 @@ def test_a_path_comes_back_exactly():
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"times": [0], "positions": [[1, 2]]}'])
-def test_what_is_no_path_is_refused(text):
+def test_malformed_paths_are_refused(text):
     with pytest.raises(LogError, match=r"path\.json: is not a path of the end effector"):
         path_from_json(text)

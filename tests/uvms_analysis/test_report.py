@@ -42,7 +42,7 @@ def test_the_page_holds_all_figures_and_nothing_from_elsewhere(folder):
     assert "url(" not in page
 
 
-def test_the_page_tells_of_the_run(folder):
+def test_the_page_describes_the_run(folder):
     page = (folder / "report.html").read_text(encoding="utf-8")
     for text in ("synthetic, seed 7", "completed", "git_revision", "abc", "config.yaml", "dark"):
         assert text in page
@@ -66,11 +66,11 @@ def test_figures_that_cannot_be_drawn_say_why(tmp_path):
     assert not list(tmp_path.glob("*.png"))
 
 
-def test_a_broken_off_log_is_told(tmp_path, folder):
+def test_a_broken_off_log_is_reported(tmp_path, folder):
     data = (folder / "run.mcap").read_bytes()
     (tmp_path / "run.mcap").write_bytes(data[: len(data) // 2])
     page = report(tmp_path / "run.mcap").read_text(encoding="utf-8")
-    assert "The log is not complete: its writer did not come to its end" in page
+    assert "The log is not complete: the writer was stopped early" in page
     assert "not completed" in page
 
 

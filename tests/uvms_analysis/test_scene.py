@@ -5,8 +5,11 @@ import pytest
 from matplotlib.image import imread
 from synthetic import Known, write_log
 
+from uvms_analysis.analysis import Analysis
 from uvms_analysis.errors import LogError
+from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.writer import LogWriter
+from uvms_analysis.report.arrows import SHORTEST, force_arrows
 from uvms_analysis.report.posture import HULL, Posture, ball, body_shapes, chord, rod
 from uvms_analysis.report.raycast import Camera, Layer, blend, frame, render, shrink
 from uvms_analysis.report.scene import SIZE, draw_scene
@@ -106,6 +109,26 @@ def test_a_line_enters_and_leaves_the_hull_on_its_surface():
     for distance in chord(hull, place, along):
         assert np.sum(((place + distance * along) / half) ** 2) == pytest.approx(1.0)
     assert chord(hull, np.array([0.0, 1.0, 0.0]), along) is None
+
+
+@pytest.mark.parametrize("to_viewer", [[0.0, 1.0, 0.0], [0.0, -1.0, 0.0], [1.0, 0.0, -1.0]])
+def test_arrows_stand_outside_the_hull_and_point_along_the_thrust(log, to_viewer):
+    run = Analysis(RunLog.open(log))
+    pose = np.array([1.0, 2.0, 10.0]), np.eye(3)
+    posture = Posture(3.0, pose, np.zeros(4))
+    found = force_arrows(run, posture, np.array(to_viewer))
+    thrust = run.allocation.thrust[np.searchsorted(run.allocation.time, 3.0)]
+    heads = [shape for shape in found.shapes if shape.kind == "cone"]
+    shown = np.abs(thrust) > SHORTEST * np.abs(thrust).max()
+    force = (run.disturbance.restoring + run.disturbance.coupling)[0, :3]
+    assert len(heads) == shown.sum() + (np.linalg.norm(force) > SHORTEST * np.abs(thrust).max())
+    pairs = zip(run.vehicle.thrusters, thrust, strict=True)
+    expected = [np.sign(value) * np.array(item.direction) for item, value in pairs]
+    for head, along in zip(heads, np.array(expected)[shown], strict=False):
+        tip = head.axes[:, 2] / np.linalg.norm(head.axes[:, 2])
+        np.testing.assert_allclose(tip, along, atol=1e-12)
+        through = chord(run.vehicle.hull, head.centre - pose[0], tip)
+        assert through is None or not through[0] < 0.0 < through[1]
 
 
 def test_the_picture_shows_a_yellow_hull_on_a_light_background(log, tmp_path):

@@ -1,4 +1,4 @@
-"""Summaries of a run whose figures are known beforehand."""
+"""Summaries of a run whose metrics are known beforehand."""
 
 import json
 
@@ -28,7 +28,7 @@ def summary(log_file):
     return summarise(log_file, completed=True, wall_s=4.0)
 
 
-def test_what_the_issue_asks_for_is_there(summary):
+def test_all_metrics_are_there(summary):
     assert {
         "scenario",
         "seed",
@@ -83,7 +83,7 @@ def test_forces_and_computing_time(summary):
     assert summary["planner_step_ms"]["p99"] == pytest.approx(24.76)
 
 
-def test_the_start_of_the_path_is_found_where_the_planner_does_not_say_it(tmp_path, summary):
+def test_the_start_of_the_path_is_found_where_the_planner_does_not_report_it(tmp_path, summary):
     write_log(tmp_path / "run.mcap", Known(duration=12.0, path_duration=10.0, name_start=False))
     other = summarise(tmp_path / "run.mcap", completed=True, wall_s=4.0)
     assert other["end_effector_error_m"] == summary["end_effector_error_m"]
@@ -108,7 +108,7 @@ def test_a_broken_off_log_is_summed_up_as_far_as_it_goes(tmp_path, log_file, sum
     data = log_file.read_bytes()
     (tmp_path / "cut.mcap").write_bytes(data[: int(0.6 * len(data))])
     part = summarise(tmp_path / "cut.mcap", completed=False, wall_s=4.0)
-    assert part["log_fault"].startswith("its writer did not come to its end")
+    assert part["log_fault"].startswith("the writer was stopped")
     assert 1.0 < part["sim_duration_s"] < 12.0
     assert part["end_effector_error_m"]["max"] == pytest.approx(0.02, abs=1e-9)
     recover(tmp_path / "cut.mcap", tmp_path / "whole.mcap")

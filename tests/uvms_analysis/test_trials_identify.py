@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import yaml
+from command_line import main
 from made_trials import DATA, VEHICLE, made_trial, write_trial
 
 from uvms_analysis.errors import TrialError
@@ -15,7 +16,6 @@ from uvms_analysis.trials.parameters import CANDIDATES, changed, present, value_
 from uvms_analysis.trials.predict import drive_model, dynamic, prepare_trial
 from uvms_analysis.trials.rewrite import rewritten
 from uvms_analysis.trials.score import scores
-from uvms_bringup.cli import main
 from uvms_core.vehicle import load_vehicle, vehicle_from_data
 
 STATIC = ("hull.cb_m.0", "hull.cb_m.1", "hull.cb_m.2")
@@ -30,6 +30,7 @@ def with_three_joints(folder: Path) -> Path:
     data = yaml.safe_load(VEHICLE.read_text(encoding="utf-8"))
     for name in ("joints", "links", "stowed_deg"):
         del data["arm"][name][-1]
+    del data["arm"]["postures_deg"]
     file = folder / "three.yaml"
     file.write_text(yaml.safe_dump(data), encoding="utf-8")
     return file
@@ -128,7 +129,7 @@ def test_the_vehicle_file_is_not_written_over(tmp_path, capsys):
 
 
 def test_an_arm_at_rest_shows_little(data):
-    """In one pose of the arm, its heading and the static moment are not to be printed apart."""
+    """In one pose of the arm, its heading and the static moment cannot be separated."""
     resting = [each for each in prepared_trials(str(DATA)) if "baseline" in each.trial.name]
     candidates = chosen(data, *STATIC[:2], "arm.base.rpy_deg.2", "hull.linear_damping.3")
     found = identify(data, resting, candidates=candidates)
@@ -144,8 +145,8 @@ def test_nothing_at_all_is_an_error(data):
         identify(data, resting, candidates=chosen(data, "hull.quadratic_damping.3"))
 
 
-def test_two_trials_do_not_show_errors(data, made):
-    with pytest.raises(TrialError, match=r"2 trials do not show how well .* at least 3"):
+def test_two_trials_are_too_few_for_errors(data, made):
+    with pytest.raises(TrialError, match=r"2 trials are too few to show how well .* at least 3"):
         fit(data, [prepare_trial(trial) for trial in made[1][:2]], chosen(data, *STATIC))
 
 

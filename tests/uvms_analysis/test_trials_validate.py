@@ -4,6 +4,7 @@ import dataclasses
 
 import numpy as np
 import pytest
+from command_line import main
 from made_trials import DATA, VEHICLE, body_matrix, made_trial, write_trial
 
 from uvms_analysis.trials import convention
@@ -13,7 +14,6 @@ from uvms_analysis.trials.read import read_trial
 from uvms_analysis.trials.score import medians, scores
 from uvms_analysis.trials.sensor import sensor_tilts
 from uvms_analysis.trials.validate import DYNAMIC, QUASI_STATIC, outcomes, table
-from uvms_bringup.cli import main
 from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import quat_to_matrix
 

@@ -1,4 +1,4 @@
-"""`uvms added-mass`: what it prints is a vehicle file's entry; what it cannot do, it names."""
+"""`uvms added-mass`: it prints an entry of a vehicle file, and names what it cannot do."""
 
 import numpy as np
 import pytest
@@ -16,16 +16,16 @@ def _elsewhere(tmp_path, monkeypatch):
 
 
 @pytest.fixture
-def said(capsys):
+def run(capsys):
     """Runs the command; comments and matrix of its output."""
 
-    def run(*arguments):
+    def printed(*arguments):
         assert main(["added-mass", *arguments]) == 0
         out = capsys.readouterr().out
         comments = [line for line in out.splitlines() if line.startswith("#")]
         return "\n".join(comments), np.array(yaml.safe_load(out)["added_mass"])
 
-    return run
+    return printed
 
 
 @pytest.fixture
@@ -40,8 +40,8 @@ def error(capsys):
     return run
 
 
-def test_output_is_an_entry_of_the_vehicle_file(said):
-    comments, matrix = said("spheroid:2.4,0.38", "--panels", "800")
+def test_output_is_an_entry_of_the_vehicle_file(run):
+    comments, matrix = run("spheroid:2.4,0.38", "--panels", "800")
     for text in ("unbounded water of 1025 kg/m^3", "volume 0.1814", "Lamb", "asymmetry before"):
         assert text in comments
     vehicle = load_vehicle(overrides={"hull.added_mass": matrix.tolist()})
@@ -52,18 +52,18 @@ def test_output_is_an_entry_of_the_vehicle_file(said):
     assert own[3] == 0.0  # a bare spheroid; the file's roll is that of its fins
 
 
-def test_mesh_in_millimetres_with_z_upwards(said, error):
+def test_mesh_in_millimetres_with_z_upwards(run, error):
     """A ball whose middle is 200 mm above the mesh's origin and 100 mm behind the body's."""
     ball = trimesh.creation.icosphere(subdivisions=2, radius=250.0)
     ball.apply_translation([300.0, 0.0, 200.0])
     ball.export("ball.stl")
     assert "--scale 0.001 for millimetres" in error("ball.stl")
     frame = ("--scale", "0.001", "--rpy", "180,0,0", "--about", "0.4,0,0", "--density", "1000")
-    comments, matrix = said("ball.stl", *frame, "--panels", "400")
+    comments, matrix = run("ball.stl", *frame, "--panels", "400")
     assert "its centre -0.1, 0, -0.2 m" in comments
     assert "convergence: extrapolation changes" in comments
     assert "--about X,Y,Z?" not in comments
-    elsewhere, _ = said("ball.stl", "--scale", "0.001", "--panels", "400")
+    elsewhere, _ = run("ball.stl", "--scale", "0.001", "--panels", "400")
     assert "the frame's origin lies outside the body: --about X,Y,Z?" in elsewhere
     m = 0.5 * 1000.0 * 4.0 / 3.0 * np.pi * 0.25**3
     assert np.diag(matrix)[:3] == pytest.approx([m] * 3, rel=0.05)  # inscribed: 4 % less volume
@@ -72,17 +72,17 @@ def test_mesh_in_millimetres_with_z_upwards(said, error):
     assert matrix[2, 4] == pytest.approx(0.1 * m, rel=0.05)
 
 
-def test_large_mesh_is_solved_as_it_is(said, monkeypatch):
+def test_large_mesh_is_solved_as_it_is(run, monkeypatch):
     monkeypatch.setattr("uvms_dynamics.panel_method.bodies.MOST_HALVED", 800)
     trimesh.creation.icosphere(subdivisions=2, radius=0.25).export("ball.obj")
-    comments, matrix = said("ball.obj", "--panels", "800")
-    assert "convergence: not estimated; --panels 1280 would do it" in comments
+    comments, matrix = run("ball.obj", "--panels", "800")
+    assert "convergence: not estimated; --panels 1280 would estimate it" in comments
     assert np.linalg.eigvalsh(matrix)[0] >= -1e-9
 
 
-def test_parts_of_a_vehicle_file(said, error):
+def test_parts_of_a_vehicle_file(run, error):
     file = str(reference_file())
-    comments, matrix = said("forearm", "--vehicle", file, "--panels", "400")
+    comments, matrix = run("forearm", "--vehicle", file, "--panels", "400")
     now = np.array(load_vehicle().arm.links[2].added_mass)
     assert "vehicle file now" in comments
     assert 0.8 * now[0, 0] < matrix[0, 0] < 0.95 * now[0, 0]  # round ends, water escapes
@@ -90,19 +90,19 @@ def test_parts_of_a_vehicle_file(said, error):
     strips = next(line for line in comments.splitlines() if "strip theory" in line)
     assert strips.split()[5] == "-"  # X and Y across, Z along
     assert strips.endswith("an upper bound across the axis")
-    comments, _ = said("hull", "--vehicle", file, "--panels", "400")
+    comments, _ = run("hull", "--vehicle", file, "--panels", "400")
     assert "K of the bare shape is 0: the file's 0.80573 kg m^2" in comments
     assert "it has hull, swing_link, upper_arm" in error("rudder", "--vehicle", file)
     assert "--scale and --about: not for part hull of a vehicle file" in error(
         "hull", "--vehicle", file, "--scale", "1", "--about", "0,0,1"
     )
     for part in ("hull", "forearm"):
-        assert "say which with --vehicle FILE" in error(part)
+        assert "name the file with --vehicle FILE" in error(part)
 
 
 def test_mistakes_are_named(error):
     assert "hull.stl: there is no such mesh file" in error("hull.stl")
-    assert "shape 'ball' is unknown; known are sphere:RADIUS" in error("ball:1")
+    assert "shape 'ball' is unknown; choose one of sphere:RADIUS" in error("ball:1")
     assert "--flip: not for shape sphere:1" in error("sphere:1", "--flip")
     assert "sphere:0: radius 0: must be a length in m" in error("sphere:0")
     assert "9 panels are too few" in error("sphere:1", "--panels", "9")

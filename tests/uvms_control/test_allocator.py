@@ -88,8 +88,8 @@ def test_any_layout_gives_the_weighted_least_squares_thrust(seed, m, tau):
     rhs = np.concatenate([rows * tau, np.zeros(m)])
     # quadprog (Goldfarb-Idnani): scipy's bvls stopped short of the optimum on one such problem.
     box = np.hstack([np.eye(m), -np.eye(m)])
-    oracle = quadprog.solve_qp(stacked.T @ stacked, stacked.T @ rhs, box, -np.ones(2 * m))[0]
-    assert np.allclose(result.thrust, limits * oracle, atol=1e-5 * limits.max())
+    reference = quadprog.solve_qp(stacked.T @ stacked, stacked.T @ rhs, box, -np.ones(2 * m))[0]
+    assert np.allclose(result.thrust, limits * reference, atol=1e-5 * limits.max())
 
 
 @settings(max_examples=200, deadline=None)

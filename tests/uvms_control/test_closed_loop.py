@@ -28,7 +28,7 @@ TOOL, _ = end_effector(MODEL, np.zeros(3), np.array([0.0, 0.0, 0.0, 1.0]), WORKI
 
 
 def tool_errors(compensate, duration=20.0):
-    """Distance of the tool from where it shall be, under a push that nobody observes."""
+    """Distance of the tool from its target, under a push that no observer estimates."""
     controller = Controller(VEHICLE, ControlConfig(compensate_vehicle_motion=compensate))
     push = np.array([3.0, -3.0, 4.0, 0.3, 1.0, 1.0])
     reference = hold(WORKING, tool=TOOL)

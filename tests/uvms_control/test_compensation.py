@@ -1,4 +1,4 @@
-"""The arm makes up for what the vehicle strays, within bounds, and no further."""
+"""The arm compensates for the vehicle's position error, within bounds."""
 
 import numpy as np
 import pytest
@@ -26,17 +26,17 @@ def wanted(q=WORKING):
     return ReferenceSample(np.zeros(3), LEVEL, np.zeros(6), np.zeros(6), q, zero, zero, tool)
 
 
-def settle(strayed, desired, config=None, ticks=200):
+def settle(displaced, desired, config=None, ticks=200):
     compensation = EndEffectorCompensation(MODEL, config or CompensationConfig(), LOWER, UPPER)
-    odometry, _ = strayed.estimates(0)
+    odometry, _ = displaced.estimates(0)
     for _ in range(ticks):
         correction = compensation.step(odometry, desired, PERIOD)
     return correction, compensation
 
 
-def tool_error(strayed, desired, correction):
+def tool_error(displaced, desired, correction):
     q = desired.q + correction.angle
-    tool, _ = end_effector(MODEL, strayed.position, strayed.quaternion, q)
+    tool, _ = end_effector(MODEL, displaced.position, displaced.quaternion, q)
     return float(np.linalg.norm(tool - desired.end_effector))
 
 
@@ -46,11 +46,13 @@ def tool_error(strayed, desired, correction):
     turn=st.lists(st.floats(-0.03, 0.03), min_size=3, max_size=3).map(np.array),
 )
 def test_small_vehicle_errors_are_made_up_for(shift, turn):
-    strayed = at_rest(WORKING, shift, rotation_vector_to_quat(turn))
-    correction, _ = settle(strayed, wanted())
-    none, _ = settle(strayed, wanted(), ticks=0 + 1)
-    assert tool_error(strayed, wanted(), correction) < 2e-3
-    assert tool_error(strayed, wanted(), correction) <= tool_error(strayed, wanted(), none) + 1e-6
+    displaced = at_rest(WORKING, shift, rotation_vector_to_quat(turn))
+    correction, _ = settle(displaced, wanted())
+    none, _ = settle(displaced, wanted(), ticks=0 + 1)
+    assert tool_error(displaced, wanted(), correction) < 2e-3
+    assert (
+        tool_error(displaced, wanted(), correction) <= tool_error(displaced, wanted(), none) + 1e-6
+    )
 
 
 def test_without_an_error_nothing_is_corrected():

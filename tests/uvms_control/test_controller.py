@@ -1,4 +1,4 @@
-"""The controller's boundary: what it checks, what it says, and that a bad input changes nothing."""
+"""Checks of the controller's inputs: error messages, and that a bad input changes nothing."""
 
 from dataclasses import replace
 

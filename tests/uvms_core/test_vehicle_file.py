@@ -26,8 +26,8 @@ def refusal(**overrides):
     """Error text of the reference vehicle with `a__b` for `a.b`, without the file's name."""
     with pytest.raises(VehicleFileError) as fault:
         load_vehicle(overrides={path.replace("__", "."): v for path, v in overrides.items()})
-    told = re.escape(str(reference_file()))
-    return re.sub(rf"^{told}(?: with [^:]*)?: ", "", str(fault.value), flags=re.MULTILINE)
+    file = re.escape(str(reference_file()))
+    return re.sub(rf"^{file}(?: with [^:]*)?: ", "", str(fault.value), flags=re.MULTILINE)
 
 
 def test_counts_and_names():
@@ -153,12 +153,12 @@ def test_unknown_override_lists_the_choices():
         (
             "arm.stowed_deg",
             [0.0, 0.0, 150.0, 0.0],
-            "arm: Value error, stowed_deg 150 of joint elbow is outside its limits 0 to 140",
+            "arm: Value error, stowed_deg: 150 of joint elbow is outside its limits 0 to 140",
         ),
         (
             "arm.drag_coefficient.reynolds",
             [1.0, 3.0],
-            "arm.drag_coefficient: Value error, reynolds has 2 values, cd has 9; must be as many",
+            "arm.drag_coefficient: Value error, reynolds has 2 values, cd has 9; give one cd each",
         ),
         (
             "arm.links.0.cylinder",

@@ -1,15 +1,54 @@
-"""YAML that people write: one line that says where and why, whatever is wrong with it."""
+"""YAML 1.2 as people write it, one line of error with its place, and text that survives."""
 
 import pytest
+import yaml
 
 from uvms_core.errors import ConfigError
-from uvms_core.yaml_text import parse_yaml, read_yaml
+from uvms_core.yaml_text import MAX_VALUES, dump_yaml, parse_yaml, read_yaml
 
 
 def refusal(text: str) -> str:
     with pytest.raises(ConfigError) as fault:
         parse_yaml(text, "it", ConfigError)
     return str(fault.value)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("1e-3", 0.001),
+        ("5E6", 5e6),
+        ("012", 12),
+        ("0o12", 10),
+        ("on", "on"),
+        ("off", "off"),
+        ("yes", "yes"),
+        ("no", "no"),
+        ("true", True),
+        ("1:30", "1:30"),
+        ("~", None),
+        ("", None),
+    ],
+)
+def test_scalars_are_those_of_yaml_1_2(text, value):
+    found = parse_yaml(text, "it", ConfigError)
+    assert (found, type(found)) == (value, type(value))
+
+
+def test_text_that_looks_like_a_number_stays_text_for_either_version():
+    """ROS reads parameter files as YAML 1.1, this project reads 1.2."""
+    texts = ["1e-3", ".5e3", "012", "0o12", "0x1f", "1:30", "1_000", "on", "yes", "~", "x", "1."]
+    data = {"texts": texts, "numbers": [1e-5, -1e300, 0.1, 12, True, None]}
+    written = dump_yaml(data)
+    assert parse_yaml(written, "it", ConfigError) == data
+    assert yaml.safe_load(written) == data
+
+
+def test_an_alias_counts_for_all_that_it_stands_for():
+    lines = ["a0: &a0 [1, 1, 1, 1, 1, 1, 1, 1, 1, 1]"]
+    lines += [f"a{k + 1}: &a{k + 1} [{', '.join([f'*a{k}'] * 10)}]" for k in range(20)]
+    assert f"more than {MAX_VALUES} values" in refusal("\n".join(lines))
+    assert len(parse_yaml("\n".join(lines[:3]), "it", ConfigError)["a2"]) == 10
 
 
 def test_merge_keys_are_taken_and_may_be_overruled():
@@ -25,7 +64,10 @@ def test_merge_keys_are_taken_and_may_be_overruled():
         ("a: {b: 1, 'b': 2}", "line 1, column 11: the key 'b' is given twice"),
         ("a: [1, 2", "line 1, column 9: expected ',' or ']', but got '<stream end>'"),
         ("a: 2020-99-99", "month must be in 1..12"),
-        ("[1]: 2", "line 1, column 1: found unhashable key"),
+        ("&a [*a]", "more than 100000 values"),
+        ("a: *b", "line 1, column 4: found undefined alias 'b'"),
+        ("a:\n\t- 1", "line 2, column 1: found character '\\t' that cannot start any token"),
+        ("a: {<<: {b: 1}, <<: {c: 1}}", "line 1, column 17: found duplicate merge key"),
         ("a: !!python/object:os.system x", "line 1, column 4: could not determine a constructor"),
         ("a: \x00", "unacceptable character #x0000"),
         ("[" * 5000, "maximum recursion depth exceeded"),

@@ -41,6 +41,7 @@ def random_vehicle(seed: int, n: int, **changes) -> Vehicle:
         base=_mounting(rng),
         tool=_mounting(rng),
         stowed_deg=[0.0] * n,
+        postures_deg={},
         joints=[{**joint, **_joint(rng), "name": f"j{i}"} for i in range(n)],
         links=[{**link, **_link(rng), "name": f"l{i}"} for i in range(n)],
     )

@@ -13,6 +13,7 @@ from uvms_core import registry
 from uvms_dynamics.kernels import compile_cache
 from uvms_dynamics.kernels.compile_cache import fingerprint
 
+DECORATORS = ("@njit", "@kernel", "@inner", "@exact_")
 KERNEL_PACKAGES = registry.names(registry.KERNELS)
 
 

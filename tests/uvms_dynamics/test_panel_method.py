@@ -268,7 +268,7 @@ def with_thruster_that_overlaps(panels):
     ("spoil", "text"),
     [
         (with_hole, "the surface is not closed: 3 of "),
-        (with_one_turned, "neighbouring panels point to different sides at 3 edges"),
+        (with_one_turned, "neighbouring panels have opposite orientation at 3 edges"),
         (with_inner_wall, "2 separate surfaces, one of which encloses -"),
         (with_battery, "2 separate surfaces, two of which overlap or lie within"),
         (with_thruster_that_overlaps, "two of which overlap .*at "),
@@ -308,7 +308,7 @@ def test_unreadable_files_are_named(tmp_path):
     with pytest.raises(PanelMethodError, match=r"hull\.stl: there is no such mesh file"):
         load_panels(tmp_path / "hull.stl")
     for name in ("hull.stl", "hull.gdf", "hull.doc"):
-        (tmp_path / name).write_text("nothing of use")
+        (tmp_path / name).write_text("not a mesh")
         with pytest.raises(PanelMethodError, match=name):
             load_panels(tmp_path / name)
 
@@ -326,14 +326,17 @@ def test_native_format_of_panel_codes_is_read(tmp_path):
 @pytest.mark.parametrize(
     ("word", "text"),
     [
-        ("ball:1", "shape 'ball' is unknown; known are sphere:RADIUS, spheroid:LENGTH,DIAMETER"),
+        (
+            "ball:1",
+            "shape 'ball' is unknown; choose one of sphere:RADIUS, spheroid:LENGTH,DIAMETER",
+        ),
         ("sphere:big", "must be sphere:RADIUS with numbers in m"),
         ("box:1,2", "has 2 numbers; must be box:LENGTH_X,LENGTH_Y,LENGTH_Z"),
         ("cylinder:-1,2", "radius -1: must be a length in m, > 0"),
         ("sphere:nan", "radius nan: must be a length in m, > 0"),
     ],
 )
-def test_shapes_that_are_none_are_named(word, text):
+def test_unknown_shapes_are_named_with_the_choices(word, text):
     with pytest.raises(PanelMethodError, match=text):
         parse_solid(word)
 

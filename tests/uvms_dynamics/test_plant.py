@@ -177,7 +177,10 @@ def test_a_start_that_is_not_finite_is_named():
             {"step_s": 0.004, "control_period_s": 0.02},
             "sensors.imu.rate_hz: its period of 0.01 s must be a multiple of step_s = 0.004 s",
         ),
-        ({"initial_joints_deg": (1.0, 2.0)}, "initial_joints_deg: has 2 values for 4 joints"),
+        (
+            {"initial_joints_deg": (1.0, 2.0)},
+            "initial_joints_deg: has 2 values for 4 joints: swing, shoulder, elbow, wrist",
+        ),
         (
             {"step_s": 0.05},
             "step_s: 0.05 s is unstable with the stop_dissipation_s_rad of arm.joints.0 (swing): a"

@@ -8,8 +8,8 @@ from urdf_chains import real_vehicle
 from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import build_model, forward_dynamics, quat_to_matrix, restoring_wrench
 from uvms_dynamics.simulation.prescribed import (
-    JointMotion,
     Load,
+    PrescribedJoints,
     base_acceleration,
     base_inertia,
     float_freely,
@@ -22,7 +22,7 @@ def still(q, steps, step=0.05):
     """A motion in which the arm holds its pose."""
     rows = 2 * steps + 1
     none = np.zeros((rows, len(q)))
-    return JointMotion(np.full(steps, step), np.tile(q, (rows, 1)), none, none)
+    return PrescribedJoints(np.full(steps, step), np.tile(q, (rows, 1)), none, none)
 
 
 def state(quat, nu=(0.0,) * 6):
@@ -49,7 +49,8 @@ def test_it_is_forward_dynamics_when_driven_by_its_joint_accelerations(seed, n):
 
 
 def test_it_comes_to_rest_where_weight_and_buoyancy_balance():
-    vehicle = real_vehicle(**{"hull.linear_damping": [20.0, 20.0, 20.0, 2.0, 2.0, 2.0]})
+    damping = [20.0, 20.0, 20.0, 2.0, 2.0, 2.0]
+    vehicle = real_vehicle(**{"hull.linear_damping": damping, "tether": None})
     model, q = build_model(vehicle), np.radians([40.0, 90.0, 30.0, 0.0])
     end = float_freely(model, state(LEVEL), still(q, 1200), Load())[-1]
     assert np.abs(end[10:]).max() < 1e-4
@@ -80,8 +81,14 @@ def test_a_load_changes_with_depth_and_fades_with_time():
     deep[2] = 3.0
     moment = np.array([2.0, -1.0, 0.5])
     expected = float_freely(model, deep, motion, Load(weight=4.0, moment=moment))[-1, 7:]
-    by_depth = Load(weight_per_m=2.0, moment_per_m=moment / 2.0, reference_depth=1.0)
-    found = float_freely(model, deep, motion, by_depth)[-1, 7:]
+    data = random_vehicle(45, 2).model_dump(mode="json")
+    data["tether"] = {
+        "reference_depth_m": 1.0,
+        "weight_per_m_n": 2.0,
+        "moment_per_m_nm": (moment / 2.0).tolist(),
+    }
+    tethered = build_model(vehicle_from_data(data))
+    found = float_freely(tethered, deep, motion, Load())[-1, 7:]
     np.testing.assert_allclose(found, expected, rtol=1e-4)
     slow = Load(weight=4.0, moment_fading=moment, fading_time=1e6)
     np.testing.assert_allclose(float_freely(model, deep, motion, slow)[-1, 7:], expected, rtol=1e-6)

@@ -27,7 +27,7 @@ def vehicle_of(stations, coefficient=None):
     """One straight link; no strips at all for stations = 0."""
     data = REFERENCE.model_dump(mode="json")
     arm = data["arm"]
-    arm.update(base={"position_m": [0.0, 0.0, 0.0]}, stowed_deg=[0.0])
+    arm.update(base={"position_m": [0.0, 0.0, 0.0]}, stowed_deg=[0.0], postures_deg={})
     joint = {"a_m": 0.0, "alpha_deg": 0.0, "d_m": 0.0, "offset_deg": 0.0}
     arm["joints"] = [arm["joints"][0] | joint]
     cylinder = {"center_m": [0.5 * LENGTH, 0.0, 0.0], "axis": [1.0, 0.0, 0.0]}

@@ -188,6 +188,7 @@ def test_arms_of_other_lengths(joints):
     data["arm"]["joints"] = data["arm"]["joints"][:joints]
     data["arm"]["links"] = data["arm"]["links"][:joints]
     data["arm"]["stowed_deg"] = data["arm"]["stowed_deg"][:joints]
+    data["arm"]["postures_deg"] = {}
     vehicle = vehicle_from_data(data)
     plant = SmallPlant(vehicle, PUSH)
     results = run(plant, DisturbanceObserver(vehicle, ObserverConfig()), 15.0, GOAL[:joints])

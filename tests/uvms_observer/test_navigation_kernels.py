@@ -1,5 +1,6 @@
 """The filter's kernels against their numpy reference and against finite differences."""
 
+import navigation_reference as numpy_reference
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -7,7 +8,6 @@ from hypothesis import strategies as st
 from nav_states import NOISE, minus, numeric_jacobian, random_state
 from scipy.spatial.transform import Rotation
 
-from uvms_observer.navigation import numpy_reference
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements import dvl, imu, position, pressure
 from uvms_observer.navigation.propagation import propagate

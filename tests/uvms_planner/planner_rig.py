@@ -112,7 +112,7 @@ def six_joint_vehicle() -> Vehicle:
     for name, alpha, length in (("bend", -90.0, 0.0), ("spin", 0.0, 0.1)):
         arm["joints"].append({**wrist, "name": name, "alpha_deg": alpha, "d_m": length})
         arm["links"].append({**gripper, "name": f"{name}_link"})
-    arm["stowed_deg"] = [*arm["stowed_deg"], 0.0, 0.0]
+    arm["stowed_deg"], arm["postures_deg"] = [*arm["stowed_deg"], 0.0, 0.0], {}
     return vehicle_from_data(data)
 
 

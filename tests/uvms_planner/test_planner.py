@@ -178,8 +178,8 @@ def test_the_tracking_error_is_that_of_the_estimate():
 def test_a_path_that_begins_beside_the_tool_is_joined():
     run = drive()
     goal = short_figure_9().goal(*run.planner.end_effector)
-    beside = PathGoal(goal.times, goal.positions + [0.03, 0.0, -0.02], NONE)
-    run.planner.accept(beside)
+    offset = PathGoal(goal.times, goal.positions + [0.03, 0.0, -0.02], NONE)
+    run.planner.accept(offset)
     step = run.advance()
     assert step.feedback.planned_error == pytest.approx(np.hypot(0.03, 0.02), rel=0.02)
     assert run.until_finished().max_planned_error < 1e-4
@@ -287,7 +287,7 @@ def test_a_plan_that_leaves_its_reach_is_given_up_and_says_so():
     run.planner._solver.limits.upper[4:] = run.references[-1].q[-1] + 1e-6
     result = run.until_finished()
     assert not result.success
-    assert result.message.startswith("given up at t = ")
+    assert result.message.startswith("aborted at t = ")
     assert "m away, allowed 0.001 m" in result.message
     run.advance(8)
     assert np.max(np.abs(run.references[-1].nu)) < 1e-12

@@ -35,8 +35,8 @@ def pitched(*degrees):
     )
 
 
-def said(goal, run=RUN):
-    """What the planner says to the goal that it rejects."""
+def rejection(goal, run=RUN):
+    """The message with which the planner rejects the goal."""
     with pytest.raises(GoalRejected) as caught:
         run.planner.accept(goal)
     return str(caught.value)
@@ -86,11 +86,11 @@ def said(goal, run=RUN):
     ],
 )
 def test_malformed_paths_are_rejected_with_value_and_bound(goal, message):
-    assert said(goal).startswith(message)
+    assert rejection(goal).startswith(message)
 
 
 def test_a_path_that_is_too_fast_says_when_and_by_how_much():
-    text = said(path((0.0, 10.0), ((0, 0, 0), (3.0, 0, 0))))
+    text = rejection(path((0.0, 10.0), ((0, 0, 0), (3.0, 0, 0))))
     match = re.fullmatch(
         r"path too fast: at t = ([\d.]+) s it moves at ([\d.]+) m/s; within the rate limits the end"
         r" effector stays ([\d.]+) m behind, allowed 0.001 m",
@@ -103,7 +103,7 @@ def test_a_path_that_is_too_fast_says_when_and_by_how_much():
 
 def test_a_point_that_the_arm_alone_cannot_reach_says_how_far_it_is():
     run = drive(method="arm_only")
-    text = said(path((0.0, 100.0), ((0, 0, 0), (1.5, 0, 0))), run)
+    text = rejection(path((0.0, 100.0), ((0, 0, 0), (1.5, 0, 0))), run)
     match = re.fullmatch(
         r"path: at t = ([\d.]+) s the nearest reachable point is ([\d.e-]+) m away, allowed"
         r" 0.001 m",
@@ -115,13 +115,13 @@ def test_a_point_that_the_arm_alone_cannot_reach_says_how_far_it_is():
 
 def test_a_depth_that_the_vehicle_may_not_have_is_out_of_reach():
     run = drive(limits={"depth_max_m": 10.3})
-    text = said(path((0.0, 400.0), ((0, 0, 0), (0, 0, 3.0))), run)
+    text = rejection(path((0.0, 400.0), ((0, 0, 0), (0, 0, 3.0))), run)
     assert re.match(r"path: at t = [\d.]+ s the nearest reachable point is [\d.]+ m away", text)
 
 
 def test_an_orientation_that_the_arm_cannot_take_is_out_of_reach():
     goal = path((0.0, 200.0), ((0, 0, 0), (0, 0, 0)), pitched(0, 170))
-    text = said(goal)
+    text = rejection(goal)
     match = re.fullmatch(
         r"path: at t = ([\d.]+) s the nearest reachable orientation is ([\d.]+) deg away, allowed"
         r" 0.5 deg",
@@ -132,7 +132,7 @@ def test_an_orientation_that_the_arm_cannot_take_is_out_of_reach():
 
 
 def test_a_turn_that_is_too_fast_says_so():
-    text = said(path((0.0, 1.0), ((0, 0, 0), (0, 0, 0)), turned(0, 170)))
+    text = rejection(path((0.0, 1.0), ((0, 0, 0), (0, 0, 0)), turned(0, 170)))
     assert re.fullmatch(
         r"path too fast: at t = [\d.]+ s it moves at 0 m/s; within the rate limits the end effector"
         r" stays [\d.]+ (deg|m) behind, allowed [\d.]+ (deg|m)",
@@ -151,7 +151,7 @@ def test_a_second_goal_is_rejected_while_one_is_active():
     run = drive()
     run.planner.accept(short_figure_9(2.0, 0.01).goal(*run.planner.end_effector))
     text = "another goal is active: wait for its end, or cancel it"
-    assert said(path(), run) == text
+    assert rejection(path(), run) == text
     assert run.until_finished().success
     run.planner.accept(JointGoal(np.array([5.0]), run.references[-1].q[-1:]))
 
@@ -189,7 +189,7 @@ def test_a_second_goal_is_rejected_while_one_is_active():
 )
 def test_joint_goals_beyond_a_limit_name_the_joint(times, positions_deg, message):
     goal = JointGoal(np.array(times), np.deg2rad(np.array(positions_deg)))
-    assert said(goal) == message
+    assert rejection(goal) == message
 
 
 any_float = st.one_of(

@@ -16,7 +16,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Run the scenario on the graph; 1 if it did not come to its end."""
+    """Run the scenario on the graph; 1 if it did not complete."""
     from uvms_bringup.pace import Pace
 
     pace = Pace.parse(options.pace)

@@ -17,7 +17,7 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Run the scenario in this process; 1 if it did not come to its end."""
+    """Run the scenario in this process; 1 if it did not complete."""
     from uvms_bringup.pace import Pace
 
     _refuse_nodes(options)

@@ -3,13 +3,12 @@
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
 from uvms_core.config import Config
 from uvms_core.ros.parameters import flatten
+from uvms_core.yaml_text import dump_yaml
 
 
 def node_parameters(
@@ -36,7 +35,7 @@ def write_parameter_file(path: Path, node: str, parameters: dict[str, Any]) -> P
     """Write one node's parameters in ROS's YAML form, under any namespace."""
     content = {f"/**/{node}": {"ros__parameters": parameters}}
     path.parent.mkdir(parents=True, exist_ok=True)
-    path.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    path.write_text(dump_yaml(content), encoding="utf-8")
     return path
 
 

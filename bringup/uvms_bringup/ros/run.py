@@ -24,6 +24,7 @@ from uvms_core.ros.spin import Spinner, start
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle
 
+OURS = Cast()
 Progress = Callable[[int, str], None]
 Parameters = dict[str, dict[str, Any]]
 
@@ -145,7 +146,7 @@ def _composed(
     yield nodes, lambda: None
 
 
-def make_node(role: str, parameters: dict[str, Any], cast: Cast) -> Node:
+def make_node(role: str, parameters: dict[str, Any], cast: Cast = OURS) -> Node:
     """The node of a role inside this process, with its parameters.
 
     Raises:

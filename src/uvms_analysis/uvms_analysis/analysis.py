@@ -1,4 +1,4 @@
-"""What a log tells of a run: truth against estimate, path and reference."""
+"""A run as its log shows it: truth against estimate, path and reference."""
 
 from dataclasses import dataclass
 from functools import cached_property
@@ -18,10 +18,10 @@ from uvms_dynamics import Model, build_model, end_effector
 from uvms_dynamics.kernels.rotations import quat_to_rpy
 
 ELAPSED = "elapsed_s"
-"""Key in the planner's diagnostics: how much of its goal is done, s."""
+"""Key in the planner's diagnostics: time since the start of its goal, s."""
 
-STILL = 1e-6
-"""A reference whose end effector moves less than this, m, holds still."""
+STATIONARY_M = 1e-6
+"""A reference whose end effector moves less than this counts as stationary."""
 
 
 @dataclass(frozen=True)
@@ -33,14 +33,14 @@ class Target:
     position: Array  # (k, 3) m, map_ned
 
 
-def together(one: Series, two: Series) -> tuple[Series, Series]:
-    """Two series at the stamps that both have."""
+def at_common_stamps(one: Series, two: Series) -> tuple[Series, Series]:
+    """Two series at their common stamps."""
     _, first, second = np.intersect1d(one.stamps, two.stamps, return_indices=True)
     return one.take(first), two.take(second)
 
 
 class Analysis:
-    """A log with what follows from it; everything is worked out when first asked for."""
+    """A log and the quantities derived from it, each computed on first use."""
 
     def __init__(self, log: RunLog) -> None:
         self.log = log
@@ -61,7 +61,7 @@ class Analysis:
     @cached_property
     def _true(self) -> tuple[Series, Series]:
         odometry = self.log.series(topics.TRUE_ODOMETRY)
-        return together(odometry, self.log.series(topics.TRUE_JOINT_STATES))
+        return at_common_stamps(odometry, self.log.series(topics.TRUE_JOINT_STATES))
 
     @property
     def truth(self) -> Series:
@@ -106,7 +106,7 @@ class Analysis:
     @cached_property
     def estimated_end_effector(self) -> Series:
         """End effector by estimated pose and encoders: `position` (k, 3) m in map_ned."""
-        odometry, joints = together(self.estimate, self.log.series(topics.JOINT_STATES))
+        odometry, joints = at_common_stamps(self.estimate, self.log.series(topics.JOINT_STATES))
         return Series(odometry.stamps, {"position": self._tool(odometry, joints)})
 
     def _tool(self, odometry: Series, joints: Series) -> Array:
@@ -128,20 +128,20 @@ class Analysis:
         stamps = np.concatenate(
             [r.stamp + np.rint(1e9 * r.times).astype(np.int64) for r in self.references]
         )
-        # Segments share their ends: the later one counts.
+        # Segments share their end points: the later one is kept.
         last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
         return Series(stamps[last], {name: column[last] for name, column in columns.items()})
 
     @cached_property
     def path(self) -> PathGoal | None:
-        """The path that the run was asked for."""
+        """The path of the run's goal, None without one."""
         if goal_file.NAME not in self.log.attachments:
             return None
         return goal_file.path_from_json(self.log.text(goal_file.NAME))
 
     @cached_property
     def path_start_s(self) -> float:
-        """When the path begins: as the planner says, else where its references fit it best."""
+        """When the path begins: as the planner reports, else where its references fit it best."""
         for status in self.log.statuses("motion_planner"):
             if np.isfinite(elapsed := status.number(ELAPSED)):
                 return round(to_seconds(status.stamp) - elapsed, 9)
@@ -161,7 +161,7 @@ class Analysis:
     @cached_property
     def target(self) -> Target:
         """Where the end effector should be: on its path while that runs; without a path, where
-        the joints' motion as planned puts it; without either, where it is at the start.
+        the planned motion of the joints puts it; without either, where it is at the start.
         """
         time = self.truth.time
         if self.path is not None:
@@ -179,7 +179,7 @@ class Analysis:
 
     @staticmethod
     def _moves(points: Array) -> bool:
-        return bool(np.ptp(points, axis=0).max() > STILL)
+        return bool(np.ptp(points, axis=0).max() > STATIONARY_M)
 
     @cached_property
     def end_effector_error(self) -> Array:
@@ -188,15 +188,15 @@ class Analysis:
 
     @cached_property
     def tracking_error(self) -> Array:
-        """Estimated end effector minus target, (k, 3) m: what the loop itself can see."""
+        """Estimated end effector minus target, (k, 3) m: the error that the loop itself can see."""
         wanted = Series(self.truth.stamps[self.target.index], {"position": self.target.position})
-        estimated, wanted = together(self.estimated_end_effector, wanted)
+        estimated, wanted = at_common_stamps(self.estimated_end_effector, wanted)
         return estimated.position - wanted.position
 
     @cached_property
     def navigation(self) -> tuple[Array, Array, Array]:
         """Time (k,), estimated minus true position (k, 3) m, and its standard deviation."""
-        estimate, truth = together(self.estimate, self.truth)
+        estimate, truth = at_common_stamps(self.estimate, self.truth)
         variance = np.diagonal(estimate.pose_covariance, axis1=1, axis2=2)[:, :3]
         error = estimate.position - truth.position
         return truth.time, error, np.sqrt(np.maximum(variance, 0.0))
@@ -220,6 +220,6 @@ class Analysis:
 
     @cached_property
     def lockstep_timeouts(self) -> int:
-        """How often the plant went on without a command."""
+        """Number of times the plant continued without a command."""
         values = [status.number("lockstep_timeouts") for status in self.log.statuses("plant")]
         return int(max((value for value in values if np.isfinite(value)), default=0))

@@ -8,8 +8,8 @@ class AnalysisError(UvmsError):
 
 
 class LogError(AnalysisError):
-    """A log is missing, unreadable or lacks what was asked of it."""
+    """A log is missing, unreadable or lacks the requested data."""
 
 
 class TrialError(AnalysisError):
-    """A recorded trial is unreadable, lacks values, or cannot be driven by the vehicle given."""
+    """A recorded trial is unreadable, lacks values, or does not fit the vehicle."""

@@ -1,4 +1,4 @@
-"""The figures of a run, from its log: what `summary.json` holds."""
+"""The metrics of a run, from its log: the content of `summary.json`."""
 
 from collections.abc import Callable
 from pathlib import Path
@@ -12,7 +12,7 @@ from uvms_analysis.log.read import RunLog
 from uvms_core import topics
 from uvms_core.signals import Array
 
-Figures = dict[str, float | None]
+Metrics = dict[str, float | None]
 
 LOADED = (
     topics.TRUE_ODOMETRY,
@@ -26,7 +26,7 @@ LOADED = (
 )
 
 
-def rms_and_max(values: Array) -> Figures:
+def rms_and_max(values: Array) -> Metrics:
     """Root mean square and greatest length of vectors (k, m), or of numbers (k,)."""
     if not len(values):
         return {"rms": None, "max": None}
@@ -34,7 +34,7 @@ def rms_and_max(values: Array) -> Figures:
     return {"rms": float(np.sqrt(np.mean(lengths**2))), "max": float(np.max(lengths))}
 
 
-def percentiles(values: Array) -> Figures:
+def percentiles(values: Array) -> Metrics:
     """Median and 99th percentile."""
     if not len(values):
         return {"p50": None, "p99": None}
@@ -42,11 +42,11 @@ def percentiles(values: Array) -> Figures:
 
 
 def summarise(log: str | Path | RunLog, *, completed: bool, wall_s: float) -> dict[str, Any]:
-    """The summary of a run; what the log does not tell is None.
+    """The summary of a run; metrics that the log does not determine are None.
 
     Args:
         log: a log or its file.
-        completed: whether the run came to its end.
+        completed: whether the run reached its end.
         wall_s: wall time that it took, s.
 
     Raises:
@@ -92,18 +92,18 @@ def _effort(run: Analysis) -> dict[str, Any]:
         ),
         "planner_step_ms": percentiles(run.planner_step_ms),
         "thruster_saturated_fraction": _or_none(
-            # Of the control ticks, those in which some thruster is at its limit.
+            # Share of the control ticks in which some thruster is at its limit.
             lambda: float(np.mean(run.allocation.saturated.any(axis=1)))
         ),
         "thrust_rms_n": _or_none(lambda: float(np.sqrt(np.mean(run.allocation.thrust**2)))),
     }
 
 
-def self_disturbance(run: Analysis) -> Figures:
+def self_disturbance(run: Analysis) -> Metrics:
     """True restoring plus coupling wrench, eq. (16), root mean square of its length.
 
-    The first sample is left out: at the start no joint torque is applied yet and the arm sets off
-    under its own weight, which no planner and no controller can have an effect on.
+    The first sample is left out: no joint torque is applied yet, and the arm starts to fall under
+    its own weight, which neither planner nor controller can influence.
     """
     wrench = (run.disturbance.restoring + run.disturbance.coupling)[1:]
     return {

@@ -31,8 +31,8 @@ def floating_inertia(mass: Array) -> Array:
     """Joint-space inertia (n, n) of an arm whose vehicle floats: S = M_qq - M_qb M_bb^-1 M_bq.
 
     `mass` (6 + n, 6 + n) of the whole system. A joint torque S a with no other change of force
-    accelerates the joints by exactly a while the vehicle gives way; with M_qq alone the gain of a
-    joint that can roll the vehicle would be more than twice the one asked for.
+    accelerates the joints by exactly a while the vehicle reacts freely; with M_qq alone the gain of
+    a joint that can roll the vehicle would be more than twice the intended one.
     """
     coupling = mass[:6, 6:]
     return mass[6:, 6:] - coupling.T @ np.linalg.solve(mass[:6, :6], coupling)
@@ -52,7 +52,7 @@ class ArmController:
                 f"arm effort limits: {self.effort_limit} N m, expected positive numbers"
             )
         self._config = config
-        self._law: SSurface | None = None  # for the period below: it hardly ever changes
+        self._law: SSurface | None = None  # for the period below, which rarely changes
         self._period = 0.0
         self.reset()
 
@@ -61,7 +61,7 @@ class ArmController:
         self.integral = np.zeros_like(self.effort_limit)
 
     def law(self, dt: float) -> SSurface:
-        """The S-surface whose slope near zero has the bandwidth asked for at the period dt (s)."""
+        """The S-surface whose slope near zero has the configured bandwidth at the period dt (s)."""
         if self._law is None or dt != self._period:
             self._law, self._period = self._law_for(dt), dt
         return self._law
@@ -83,7 +83,7 @@ class ArmController:
 
         Friction is compensated at this rate. At the measured one the compensation would feed back
         as negative damping and chatter about zero; at the reference rate alone a joint would stick
-        wherever its error is worth less than its dry friction.
+        where the feedback torque is smaller than its dry friction.
         """
         law = self.law(dt)
         return q_dot + law.stiffness / law.damping * error

@@ -1,4 +1,4 @@
-"""Joint corrections that hold the end effector on its path while the vehicle strays."""
+"""Joint corrections that keep the end effector on its path when the vehicle is off its own."""
 
 from dataclasses import dataclass
 
@@ -15,7 +15,7 @@ ITERATIONS = 2
 
 @dataclass(frozen=True)
 class JointCorrection:
-    """What is added to the joint reference."""
+    """Correction added to the joint reference."""
 
     angle: Array  # (n,) rad
     rate: Array  # (n,) rad/s
@@ -34,13 +34,13 @@ class EndEffectorCompensation:
         self.reset()
 
     def reset(self) -> None:
-        """Forget the correction."""
+        """Reset the correction to zero."""
         self._angle = np.zeros(self._lower.size)
 
     def step(self, odometry: Odometry, desired: ReferenceSample, dt: float) -> JointCorrection:
         """Follow the correction that this vehicle pose needs, bounded in angle and rate.
 
-        The wanted correction is worked out from zero each time, so that it vanishes with the
+        The desired correction is computed from zero each time, so that it vanishes with the
         vehicle's error and nothing drifts where the arm is redundant.
         """
         if dt <= 0.0:

@@ -87,7 +87,7 @@ class CompensationConfig(Config):
     """Correction of the joint reference that keeps the end effector on its path."""
 
     bandwidth: float = Field(
-        default=2.0, gt=0.0, le=100.0, description="rate at which an error is taken up, 1/s"
+        default=2.0, gt=0.0, le=100.0, description="rate at which an error is corrected, 1/s"
     )
     damping: float = Field(
         default=0.05, gt=0.0, description="damping of the least-squares inverse, m/rad"
@@ -111,8 +111,7 @@ class ControlConfig(PluginConfig):
     law: str = Field(
         default="s_surface",
         description="control law: s_surface (eq. (22) and (19)), that of an installed package, or"
-        " a class as my_package.my_module:MyLaw; one that is not s_surface uses of this section"
-        " what it likes",
+        " a class as my_package.my_module:MyLaw, which may ignore the other fields of this section",
     )
     enabled: bool = Field(
         default=True,

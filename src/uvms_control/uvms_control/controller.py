@@ -27,7 +27,7 @@ class Controller:
     """Vehicle by eq. (22), arm by eq. (19); see `VehicleController` and `ArmController`."""
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
-        """`vehicle` from `uvms_dynamics.load_vehicle`."""
+        """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         self._config = config
         self._n = vehicle.n_joints
         self._joint_names = vehicle.joint_names
@@ -40,7 +40,7 @@ class Controller:
         self.reset()
 
     def reset(self) -> None:
-        """Start afresh, as before the first step."""
+        """Return to the state before the first step."""
         self._stamp: int | None = None
         self.vehicle.reset()
         self.arm.reset()

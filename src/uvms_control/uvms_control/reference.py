@@ -25,7 +25,7 @@ SMALL_ANGLE = 1e-4  # rad; below it the series of the right Jacobian are exact t
 
 @dataclass(frozen=True)
 class ReferenceSample:
-    """Where vehicle and joints are to be at one instant; frames as in `Reference`."""
+    """Desired motion of vehicle and joints at one instant; frames as in `Reference`."""
 
     position: Array  # (3,)
     quaternion: Array  # (4,)

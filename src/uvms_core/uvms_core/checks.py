@@ -22,6 +22,7 @@ MAX_AGE_S = 0.5
 """Oldest joint state or disturbance that control works with, s: a planner step."""
 
 _MARK = "_checked"
+_FLOAT64 = np.dtype(np.float64)
 S = TypeVar("S")
 Names = Mapping[str, Sequence[str]]
 
@@ -49,13 +50,18 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     kind: Any = type(signal)
     fields, sized = _fields(kind)
     if _MARK not in getattr(signal, "__dict__", ()):
-        sizes = {letter: len(each) for letter, each in names.items()}
+        sizes = {letter: len(each) for letter, each in names.items()} if names else {}
         for field, rule in fields:
-            _check_field(f"{name}.{field}", getattr(signal, field), rule, sizes, names, signal)
+            value = getattr(signal, field)
+            if not _is_good(value, rule, sizes):
+                _explain(f"{name}.{field}", value, rule, sizes, names, signal)
         trust(signal)
     elif names:
+        sizes = {letter: len(each) for letter, each in names.items()}
         for field, rule in sized:
-            _check_sizes(f"{name}.{field}", getattr(signal, field), rule, names)
+            value = getattr(signal, field)
+            if not _fits(value.shape, rule, sizes):
+                raise _wrong_shape(f"{name}.{field}", value, rule, sizes, names)
 
 
 def number(name: str, value: float) -> None:
@@ -108,45 +114,58 @@ def _is_rule(item: Any) -> bool:
     return isinstance(item, Shape | OnlyIf)
 
 
-def _check_field(
+def _is_good(value: Any, rule: Any, sizes: dict[str, int]) -> bool:
+    """The fast test: whether there is certainly nothing to explain."""
+    if type(rule) is not Shape:
+        return isfinite(value)
+    if type(value) is not np.ndarray or value.dtype != _FLOAT64:
+        return False
+    if value.shape != rule.sizes and not _fits(value.shape, rule, sizes):
+        return False
+    if value.ndim == 1:
+        squared: float = value.dot(value)
+        if rule.unit:
+            return is_unit(squared)
+    else:
+        squared = float(np.vdot(value, value))
+    return isfinite(squared) and not (rule.unit or rule.increasing)
+
+
+def _explain(
     name: str, value: Any, rule: Any, sizes: dict[str, int], names: Names, signal: Any
 ) -> None:
+    """The slow test, in words: SignalError for the first thing that is wrong."""
     if isinstance(rule, Shape):
-        _check_array(name, value, rule, sizes, names)
+        _explain_array(name, value, rule, sizes, names)
     elif rule is None or getattr(signal, rule.field):
         number(name, value)
 
 
-def _check_array(name: str, value: Any, rule: Shape, sizes: dict[str, int], names: Names) -> None:
+def _explain_array(name: str, value: Any, rule: Shape, sizes: dict[str, int], names: Names) -> None:
     if not isinstance(value, np.ndarray) or value.dtype != np.float64:
         kind = value.dtype if isinstance(value, np.ndarray) else type(value).__name__
         raise SignalError(f"{name} has type {kind}; it must be an array of float64")
-    if value.shape != rule.sizes and not _fits(value.shape, rule, sizes):
+    if not _fits(value.shape, rule, sizes):
         raise _wrong_shape(name, value, rule, sizes, names)
-    flat = value.ravel()
-    squared = flat.dot(flat)
-    if not isfinite(squared):  # one fast test; the slow way only names the value
-        _name_infinite(name, value, rule, names)
+    if not np.isfinite(value).all():
+        raise _not_finite(name, value, rule, names)
     if rule.unit:
-        _check_unit(name, value, squared)
+        _check_unit(name, value)
     if rule.increasing and (value[0] != 0.0 or (np.diff(value) <= 0.0).any()):
         raise SignalError(f"{name} is {value}; it must increase from 0")
 
 
 def _fits(shape: tuple[int, ...], rule: Shape, sizes: dict[str, int]) -> bool:
-    """Whether a shape is as the rule says; a letter takes the size that it has at first, not 0."""
-    return len(shape) == len(rule.sizes) and all(
-        (count > 0 and sizes.setdefault(size, count) == count)
-        if isinstance(size, str)
-        else size == count
-        for size, count in zip(rule.sizes, shape, strict=True)
-    )
-
-
-def _check_sizes(name: str, value: Array, rule: Shape, names: Names) -> None:
-    sizes = {letter: len(each) for letter, each in names.items()}
-    if not _fits(value.shape, rule, sizes):
-        raise _wrong_shape(name, value, rule, sizes, names)
+    """Whether a shape is as the rule says; a letter stands for the first size, not 0."""
+    if len(shape) != len(rule.sizes):
+        return False
+    for size, count in zip(rule.sizes, shape, strict=True):
+        if isinstance(size, str):
+            if not count or sizes.setdefault(size, count) != count:
+                return False
+        elif size != count:
+            return False
+    return True
 
 
 def _wrong_shape(
@@ -160,20 +179,18 @@ def _wrong_shape(
     return SignalError(f"{name} has shape {value.shape}; it must have {shape}{least}{whose}")
 
 
-def _check_unit(name: str, value: Array, squared: float) -> None:
-    if value.ndim == 1:
+def _check_unit(name: str, value: Array) -> None:
+    rows = value.reshape(-1, value.shape[-1])
+    for row, squared in enumerate(np.einsum("ij,ij->i", rows, rows)):
         if not is_unit(squared):
-            raise SignalError(f"{name} has length {squared**0.5:g}; it must be 1")
-        return
-    for row, length in enumerate(np.einsum("ij,ij->i", value, value)):
-        if not is_unit(length):
-            raise SignalError(f"{name}[{row}] has length {length**0.5:g}; it must be 1")
+            where = f"[{row}]" if value.ndim > 1 else ""
+            raise SignalError(f"{name}{where} has length {squared**0.5:g}; it must be 1")
 
 
-def _name_infinite(name: str, value: Array, rule: Shape, names: Names) -> None:
-    for where in np.argwhere(~np.isfinite(value)):
-        index = ", ".join(
-            names[str(size)][i] if size in names else str(int(i))
-            for size, i in zip(rule.sizes, where, strict=True)
-        )
-        raise SignalError(f"{name}[{index}] is {value[tuple(where)]}; it must be finite")
+def _not_finite(name: str, value: Array, rule: Shape, names: Names) -> SignalError:
+    where = tuple(int(i) for i in np.argwhere(~np.isfinite(value))[0])
+    index = ", ".join(
+        names[str(size)][i] if size in names else str(i)
+        for size, i in zip(rule.sizes, where, strict=True)
+    )
+    return SignalError(f"{name}[{index}] is {value[where]}; it must be finite")

@@ -1,4 +1,4 @@
-"""One base for every configuration: each parameter is spelled once, with unit, bound and meaning.
+"""The base of every configuration: each parameter is declared once, with unit, bounds and meaning.
 
 A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS parameters all derive
 from its fields, so that a gain has one name, one default and one description.
@@ -10,7 +10,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 
 from uvms_core.errors import ConfigError, UvmsError
 
-_LONGEST_ECHO = 120  # characters of a wrong value that are worth repeating in an error
+_LONGEST_ECHO = 120  # characters of a wrong value that an error repeats
 
 
 class Config(BaseModel):
@@ -30,8 +30,8 @@ def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
     """One line per fault: the field, the value, and what is allowed."""
     items = error.errors()
     places = [item["loc"] for item in items]
-    told = [item for item in items if not _follows_from_others(item, places)]
-    return "\n".join(_explain_one(item, what, model) for item in told)
+    shown = [item for item in items if not _follows_from_others(item, places)]
+    return "\n".join(_explain_one(item, what, model) for item in shown)
 
 
 def _follows_from_others(item, places: list[tuple]) -> bool:

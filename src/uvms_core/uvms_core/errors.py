@@ -1,8 +1,8 @@
-"""The exception tree that every package of the project hangs its own branch on."""
+"""The root of the exceptions of all packages, and those of this one."""
 
 
 class UvmsError(Exception):
-    """Root of every error that this project raises on purpose; its text is meant for the user."""
+    """Root of every error that this project raises on purpose; its text is written for users."""
 
 
 class VehicleFileError(UvmsError):
@@ -14,11 +14,19 @@ class ConfigError(UvmsError):
 
 
 class PluginError(UvmsError):
-    """A part that is found by name is unknown, cannot be imported or does not fit."""
+    """A part that is chosen by name is unknown, cannot be imported or does not fit."""
 
 
 class SignalError(UvmsError):
     """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
+
+
+class DefinitionError(UvmsError):
+    """A message type is not installed, or its definition cannot be read."""
+
+
+class CdrError(UvmsError):
+    """Bytes are not a message of the type, or values do not fit it."""
 
 
 class PlantDiverged(UvmsError):  # noqa: N818 (an event of the simulation rather than a fault)

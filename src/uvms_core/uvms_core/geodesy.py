@@ -19,9 +19,9 @@ def geodetic_to_ned(
     datum_latitude_deg: float,
     datum_longitude_deg: float,
 ) -> Array:
-    """Place (3,) in map_ned, m: north, east, down from the datum at altitude zero.
+    """Position (3,) in map_ned, m: north, east, down from the datum at altitude zero.
 
-    Exact by way of earth-centred coordinates (Farrell 2008, Aided Navigation, sec. 2.3).
+    Exact, through earth-centered coordinates (Farrell 2008, Aided Navigation, sec. 2.3).
     """
     origin = _to_earth(datum_latitude_deg, datum_longitude_deg, 0.0)
     place = _to_earth(latitude_deg, longitude_deg, altitude)
@@ -31,7 +31,7 @@ def geodetic_to_ned(
 def ned_to_geodetic(
     position: Array, datum_latitude_deg: float, datum_longitude_deg: float
 ) -> tuple[float, float, float]:
-    """Latitude and longitude in degrees and altitude in m of a place (3,) in map_ned."""
+    """Latitude and longitude in degrees and altitude in m of a position (3,) in map_ned."""
     origin = _to_earth(datum_latitude_deg, datum_longitude_deg, 0.0)
     place = origin + _earth_to_ned(datum_latitude_deg, datum_longitude_deg).T @ position
     return _from_earth(place)

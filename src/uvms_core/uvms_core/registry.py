@@ -88,6 +88,12 @@ def load(door: Door, name: str) -> Any:
     return found
 
 
+def refresh() -> None:
+    """Look at the installed packages again, after one has been installed in this process."""
+    _all_entries.cache_clear()
+    _entries.cache_clear()
+
+
 def _is_path(name: str) -> bool:
     module, colon, attribute = name.partition(":")
     parts = [*module.split("."), *attribute.split(".")]

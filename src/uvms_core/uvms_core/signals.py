@@ -7,7 +7,8 @@ in the world frame (north-east-down, `map_ned`); quaternions are (x, y, z, w), b
 body frame, about its origin.
 
 The annotations of the fields are the rules by which `uvms_core.checks` checks a signal; plain
-floats must be finite.
+floats must be finite, and plain arrays are checked only on the way from a message (the covariances
+of samples, which no part of the system reads: the vehicle file has the sensors' noise).
 """
 
 from dataclasses import dataclass
@@ -46,7 +47,6 @@ class OnlyIf:
 
 Array3 = Annotated[Array, Shape((3,))]
 Array6 = Annotated[Array, Shape((6,))]
-Array3x3 = Annotated[Array, Shape((3, 3))]
 Array6x6 = Annotated[Array, Shape((6, 6))]
 Quaternion = Annotated[Array, Shape((4,), unit=True)]
 ByJoint = Annotated[Array, Shape(("n",))]
@@ -79,9 +79,9 @@ class ImuSample:
     quaternion: Quaternion  # body to map_ned
     angular_velocity: Array3  # rad/s
     linear_acceleration: Array3  # m/s^2, specific force (a - g) at the unit's own position
-    orientation_covariance: Array3x3  # rad^2, about the body axes
-    angular_velocity_covariance: Array3x3
-    linear_acceleration_covariance: Array3x3
+    orientation_covariance: Array  # (3, 3) rad^2, about the body axes
+    angular_velocity_covariance: Array  # (3, 3)
+    linear_acceleration_covariance: Array  # (3, 3)
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,7 @@ class DvlSample:
 
     stamp: int
     velocity: Array3  # m/s
-    covariance: Array3x3
+    covariance: Array  # (3, 3)
 
 
 @dataclass(frozen=True)
@@ -111,7 +111,7 @@ class GpsSample:
     latitude_deg: NumberWithFix
     longitude_deg: NumberWithFix
     altitude: NumberWithFix  # m above the surface
-    covariance: Array3x3  # m^2, north-east-down
+    covariance: Array  # (3, 3) m^2, north-east-down
 
 
 @dataclass(frozen=True)

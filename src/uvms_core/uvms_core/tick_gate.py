@@ -1,10 +1,10 @@
-"""When a node may act: it holds all its inputs of one stamp.
+"""Decides when a node runs: when it has all its inputs of one stamp.
 
 Every node is driven by data. A `TickGate` collects the stamped inputs of one node and releases a
 tick when the inputs that are due at its stamp are there. In lockstep that makes a run repeatable,
 whatever the order in which messages arrive; in real time the trigger alone releases the tick, with
-the newest of the other inputs, so that a late node stops nobody (only an input that a node has
-never had yet is waited for). The gate knows no ROS and no clock.
+the newest of the other inputs, so that a late node does not stop the others (it waits only for an
+input that it has never received). The gate uses neither ROS nor a clock.
 """
 
 from abc import ABC, abstractmethod
@@ -18,7 +18,7 @@ DEPTH = 256
 
 
 class Input(ABC):
-    """One stamped input; the subclasses say when it is complete for a tick."""
+    """One stamped input; the subclasses define when it is complete for a tick."""
 
     def __init__(self) -> None:
         self._items: deque[tuple[int, Any]] = deque(maxlen=DEPTH)
@@ -33,14 +33,14 @@ class Input(ABC):
 
     @abstractmethod
     def complete(self, stamp: int) -> bool:
-        """Whether all that is due at the stamp has come."""
+        """Whether everything due at the stamp has arrived."""
 
     def known(self, stamp: int) -> bool:
-        """Whether there is a value to go on with, be it old."""
+        """Whether there is a value to use, even an old one."""
         return self.newest(stamp) is not None
 
     def take(self, stamp: int) -> Any:
-        """The value for the tick; what is older is forgotten."""
+        """The value for the tick; older ones are dropped."""
         value = self.newest(stamp)
         while len(self._items) > 1 and self._items[1][0] <= stamp:
             self._items.popleft()
@@ -48,22 +48,22 @@ class Input(ABC):
 
 
 class Same(Input):
-    """Comes once a tick, with the tick's own stamp."""
+    """Arrives once per tick, with the stamp of the tick."""
 
     def complete(self, stamp: int) -> bool:
-        """Whether the value of this very stamp has come."""
+        """Whether the value of exactly this stamp has arrived."""
         return any(when == stamp for when, _ in self._items)
 
 
 class Previous(Input):
-    """Feedback from the tick before, `period` nanoseconds ago."""
+    """Feedback from the previous tick, `period` nanoseconds ago."""
 
     def __init__(self, period: int) -> None:
         super().__init__()
         self._period = period
 
     def complete(self, stamp: int) -> bool:
-        """Whether the value of the tick before has come."""
+        """Whether the value of the previous tick has arrived."""
         return any(when == stamp - self._period for when, _ in self._items)
 
     def known(self, stamp: int) -> bool:
@@ -84,12 +84,12 @@ class Periodic(Input):
         self._taken = -1
 
     def complete(self, stamp: int) -> bool:
-        """Whether the sample that is due at or before the stamp has come."""
+        """Whether the sample that is due at or before the stamp has arrived."""
         due = stamp - stamp % self._period
         return due <= self._taken or (bool(self._items) and self._items[-1][0] >= due)
 
     def known(self, stamp: int) -> bool:
-        """Always: a silent sensor stops nobody."""
+        """Always: a silent sensor does not stop the node."""
         return True
 
     def take(self, stamp: int) -> tuple[Any, ...]:
@@ -126,10 +126,10 @@ class TickGate:
     Args:
         inputs: the node's inputs by name.
         trigger: the input whose stamps are the ticks.
-        lockstep: wait for all inputs of the stamp (True), or go on with the newest (False).
-        in_loop: the plant waits for this node's answer, so a newer trigger means that it gave up
-            the older tick by time-out. A node beside the loop keeps its open ticks instead.
-        every: only stamps at multiples of this are ticks (ns), for a trigger that comes more often.
+        lockstep: wait for all inputs of the stamp (True), or use the newest (False).
+        in_loop: the plant waits for this node's answer, so a newer trigger means that the plant
+            timed out on the older tick. A node outside the loop keeps its open ticks instead.
+        every: only stamps at multiples of this are ticks (ns), for a trigger that is more frequent.
     """
 
     def __init__(

@@ -11,7 +11,7 @@ from uvms_planner.interfaces import StepMethod
 
 
 class LimitsConfig(Config):
-    """How far the plan may move in a step; the vehicle file's joint limits hold besides."""
+    """Limits of the planned motion, in addition to the joint limits of the vehicle file."""
 
     translation_rate_m_s: float = Field(
         0.05, gt=0, le=2.0, description="m/s, planned speed of the vehicle along each world axis"
@@ -65,7 +65,7 @@ class ProjectionConfig(Config):
         1e-3, ge=0, le=1.0, description="damping of the pseudo-inverse, in per-step ranges"
     )
     vehicle_share: float = Field(
-        0.5, gt=0, le=1e3, description="readiness of the vehicle to move against the joints'"
+        0.5, gt=0, le=1e3, description="how readily the vehicle moves, relative to the joints"
     )
 
 
@@ -78,7 +78,7 @@ class FitnessConfig(Config):
     )
 
     lookahead_s: float = Field(
-        6.0, ge=0, le=60.0, description="s, restoring wrench where the arm's motion leads in this"
+        6.0, ge=0, le=60.0, description="s, how far ahead the restoring wrench is judged"
     )
     smoothness_weight: float = Field(
         1.0, ge=0, description="N^2 (or N^2 m^2) for a change of rate at full acceleration"
@@ -101,7 +101,7 @@ class GeneticConfig(Config):
     )
     crossover_rate: float = Field(0.8, ge=0, le=1, description="share of pairs that cross over")
     mutation_rate: float = Field(0.02, ge=0, le=1, description="probability that a bit flips")
-    elite: int = Field(2, ge=1, le=8, description="best individuals that live on unchanged")
+    elite: int = Field(2, ge=1, le=8, description="best individuals that are kept unchanged")
     seed_refinements: int = Field(
         1, ge=0, le=50, description="Gauss-Newton steps that improve each seed at the beginning"
     )
@@ -130,7 +130,10 @@ class PlannerConfig(PluginConfig):
         20.0, gt=0, le=180.0, description="deg, the same for the first orientation"
     )
     approach_s: float = Field(
-        10.0, gt=0, le=600.0, description="s, in which the tool joins a path that begins beside it"
+        10.0,
+        gt=0,
+        le=600.0,
+        description="s, in which the tool joins a path that starts at an offset from it",
     )
     limits: LimitsConfig = Field(LimitsConfig(), description="limits of the planned motion")
     projection: ProjectionConfig = Field(

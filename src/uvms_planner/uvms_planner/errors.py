@@ -1,11 +1,11 @@
-"""The planner's branch of the exception tree."""
+"""Errors of the planner package."""
 
 from uvms_core.errors import UvmsError
 
 
 class PlannerError(UvmsError):
-    """Root of what the motion planner raises on purpose."""
+    """Base of the errors that the motion planner raises."""
 
 
 class GoalRejected(PlannerError):  # noqa: N818
-    """A goal that cannot be followed; the text says which value, which bound and at which time."""
+    """A goal that cannot be followed; the message names value, bound and time."""

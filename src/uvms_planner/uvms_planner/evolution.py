@@ -1,8 +1,9 @@
 """The genetic algorithm of the paper's Fig. 3: one call finds the best increment of one step.
 
 Binary chromosomes, roulette-wheel selection by eq. (18), crossover, mutation. Added to the paper:
-seeds beside the random individuals, elitism, projection onto the path (what is still not within e
-is discarded, as in the paper), Deb's rule for the attitude limits, a polish of the best.
+seeds in addition to the random individuals, elitism, projection onto the path (candidates still
+not within e are discarded, as in the paper), Deb's rule for the attitude limits, refinement of the
+best.
 """
 
 from typing import NamedTuple
@@ -18,7 +19,7 @@ from uvms_planner.refine import refine
 
 
 class EvolutionSettings(NamedTuple):
-    """The numbers of GeneticConfig as the kernels take them."""
+    """The values of GeneticConfig in the form that the kernels take."""
 
     population: int
     generations: int

@@ -11,7 +11,7 @@ from uvms_planner.projection import project, within_tolerance
 
 @inner
 def body_motion(problem, increment):
-    """Nu (6,) and nu_dot (6,), body frame, that an increment means for the level vehicle.
+    """Nu (6,) and nu_dot (6,), body frame, of the level vehicle under an increment.
 
     Rates are the increment over the step, accelerations its change from the step before:
     nu = R^T p_dot, nu_dot = R^T p_ddot - omega x nu.
@@ -61,7 +61,7 @@ def self_disturbance(model, problem, increment, lookahead):
 
 @inner
 def judged_disturbance(model, problem, increment):
-    """The numbers (12,) whose squares make up the cost of a candidate's self-disturbance.
+    """Residuals (12,) of a candidate's self-disturbance; their squares add up to its cost.
 
     F_dis and zeros, as eq. (18) is printed, where the problem is `combined`; else restoring and
     coupling wrench on their own: in the sum a jerk of the arm would pay for a weight that stays.
@@ -92,7 +92,7 @@ def cost(model, problem, increment):
 def judge(model, problem, increment):
     """Project `increment` (m,) in place; return (valid, attitude violation in rad, cost).
 
-    A candidate whose end-effector error is not below e is not valid and is discarded, eq. (17).
+    A candidate with an end-effector error of e or more is not valid and is discarded, eq. (17).
     """
     distance, angle = project(model, problem, increment)
     if not within_tolerance(problem, distance, angle):

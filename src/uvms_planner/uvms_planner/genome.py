@@ -1,8 +1,8 @@
 """Binary chromosomes: each variable's increment in `bits` bits, Gray coded.
 
-A gene stands for an increment between its `lower` and `upper` bound of the step, so that every
-chromosome lies within the rate and joint limits. Gray code because in plain binary "stay", the
-middle of the range, is the place where all bits flip at once.
+A gene encodes an increment between its `lower` and `upper` bound of the step, so that every
+chromosome lies within the rate and joint limits. Gray code is used because in plain binary
+all bits flip in the middle of the range, which means no motion.
 """
 
 import numpy as np

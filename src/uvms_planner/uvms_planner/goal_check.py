@@ -1,4 +1,4 @@
-"""Clear rejections of paths that are malformed or cannot be followed."""
+"""Checks of a path goal before it is accepted: form, start, and whether it can be followed."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -90,10 +90,10 @@ def check_start(goal: PathGoal, position: Array, quaternion: Array, config: Plan
 def check_reachable(
     path: EndEffectorPath | JoinedPath, solver: StepSolver, configuration: Array, step: float
 ) -> None:
-    """Raise GoalRejected if the path leaves what the vehicle and arm can do, saying when.
+    """Raise GoalRejected, with the time, if vehicle and arm cannot follow the path.
 
-    The path is gone through with the projection alone, from `configuration` (m,), within the rate
-    and joint limits of every planner step.
+    The path is followed with the projection alone, from `configuration` (m,), within the rate and
+    joint limits of every planner step.
     """
     count = max(1, int(np.ceil(path.duration / step)))
     times = np.minimum(np.arange(1, count + 1) * step, path.duration)
@@ -107,7 +107,7 @@ def check_reachable(
     problem = solver.problem(configuration, still, targets[0], bounds)
     frozen = problem.upper <= problem.lower
     limits = solver.limits
-    index, distance, angle = go_along(
+    index, distance, angle = follow_by_projection(
         solver.model, problem, positions, rotations, limits.lower, limits.upper, frozen
     )
     if index < 0:
@@ -116,12 +116,12 @@ def check_reachable(
     speed = float(np.linalg.norm(targets[index].velocity))
     raise GoalRejected(
         f"path too fast: at t = {times[index]:g} s it moves at {speed:.4g} m/s; within the rate"
-        f" limits the end effector stays {_misses(problem, distance, angle)}"
+        f" limits the end effector stays {_gap_text(problem, distance, angle)}"
     )
 
 
 @kernel
-def go_along(model, problem, positions, rotations, lower, upper, frozen):
+def follow_by_projection(model, problem, positions, rotations, lower, upper, frozen):
     """Project step by step along `positions` (k, 3); `problem`'s arrays are left where it failed.
 
     Returns the index of the first point that is not within e, with (m, rad) errors; -1 if none.
@@ -153,15 +153,15 @@ def _reject_unreachable(
     solver: StepSolver,
     frozen: NDArray[np.bool_],
 ) -> None:
-    """Raise GoalRejected at the first target out of reach, however slowly one would go there."""
+    """Raise GoalRejected at the first target that is out of reach at any speed."""
     configuration = problem.configuration.copy()
     for time, target in zip(times, targets, strict=True):
         lower = np.where(frozen, 0.0, np.minimum(solver.limits.lower - configuration, 0.0))
         upper = np.where(frozen, 0.0, np.maximum(solver.limits.upper - configuration, 0.0))
         still = np.zeros_like(configuration)
-        roomy = solver.problem(configuration, still, target, (lower, upper))
-        roomy = roomy._replace(iterations=SEARCH_ITERATIONS)
-        distance, angle = project(solver.model, roomy, still)
+        unhurried = solver.problem(configuration, still, target, (lower, upper))
+        unhurried = unhurried._replace(iterations=SEARCH_ITERATIONS)
+        distance, angle = project(solver.model, unhurried, still)
         if distance >= problem.position_tolerance:
             raise GoalRejected(
                 f"path: at t = {time:g} s the nearest reachable point is {distance:.4g} m away,"
@@ -176,7 +176,7 @@ def _reject_unreachable(
         configuration = configuration + still
 
 
-def _misses(problem: StepProblem, distance: float, angle: float) -> str:
+def _gap_text(problem: StepProblem, distance: float, angle: float) -> str:
     if distance >= problem.position_tolerance:
         return f"{distance:.4g} m behind, allowed {problem.position_tolerance:g} m"
     allowed = np.rad2deg(problem.orientation_tolerance)

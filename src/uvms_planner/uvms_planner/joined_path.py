@@ -1,4 +1,4 @@
-"""A path that begins beside the tool, joined smoothly."""
+"""A path that starts at an offset from the tool, joined smoothly."""
 
 import numpy as np
 from numpy.linalg import norm

@@ -12,7 +12,7 @@ PEAK_RATE = 1.875  # of a rest-to-rest quintic, times distance / duration
 PEAK_ACCELERATION = 10 / np.sqrt(3)  # times distance / duration^2
 
 
-class JointMotion:
+class JointTrajectory:
     """Quintic rest-to-rest pieces from the joints of `configuration` (m,) through the goal."""
 
     def __init__(self, goal: JointGoal, configuration: Array, start: int, step: float):

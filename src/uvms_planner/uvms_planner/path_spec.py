@@ -12,14 +12,14 @@ Vector3 = Annotated[tuple[float, ...], Field(min_length=3, max_length=3)]
 
 
 class PathPhase(Config):
-    """One stretch of a path, from rest to rest."""
+    """One phase of a path, from rest to rest."""
 
     duration_s: float = Field(300.0, gt=0, le=86400.0, description="s, time that it takes")
     to_m: Vector3 = Field(
         (0.0, 0.0, 0.0), description="m, where it ends, from the start point, map_ned axes"
     )
     bulge_m: Vector3 = Field(
-        (0.0, 0.0, 0.0), description="m, how far half-way lies beside the straight line"
+        (0.0, 0.0, 0.0), description="m, offset of the halfway point from the straight line"
     )
 
 
@@ -27,11 +27,11 @@ class PathSpec(Config):
     """A path of the end effector in phases, each from rest to rest."""
 
     phases: tuple[PathPhase, ...] = Field(
-        (PathPhase(),), min_length=1, description="the stretches, one after the other"
+        (PathPhase(),), min_length=1, description="the phases, in order"
     )
     point_every_s: float = Field(1.0, gt=0, le=60.0, description="s between the goal's points")
     keep_orientation: bool = Field(
-        False, description="whether the tool shall keep the orientation that it has at the start"
+        False, description="keep the tool's orientation of the start along the whole path"
     )
 
     @property
@@ -73,7 +73,7 @@ def _phase_points(start: Array, phase: PathPhase, times: Array) -> Array:
 
 
 def figure_9() -> PathSpec:
-    """The manipulation of the paper's Fig. 9, with sizes of our own (the figure's are lost).
+    """The manipulation of the paper's Fig. 9, with sizes chosen here (the figure gives none).
 
     300 s down; 300 s up in the XOZ plane; 300 s up in the YOZ plane and back to the start.
     """

@@ -24,7 +24,7 @@ from uvms_planner.errors import GoalRejected
 from uvms_planner.follow import FollowedStep, PathFollower
 from uvms_planner.goal_check import check_path_goal, check_reachable, check_start
 from uvms_planner.joined_path import JoinedPath
-from uvms_planner.joint_motion import JointMotion, check_joint_goal
+from uvms_planner.joint_motion import JointTrajectory, check_joint_goal
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
@@ -44,8 +44,8 @@ class _Plan:
 class MotionPlanner:
     """Plans vehicle pose (x, y, z, psi) and joints so that the end effector follows a goal.
 
-    At the tick t the segment [t + step, t + 2 step] is planned, so that planning never keeps the
-    loop waiting; the first tick t_0 gives the segment [t_0, t_0 + step] besides, at rest. Without
+    At the tick t the segment [t + step, t + 2 step] is planned, so that the loop never waits for
+    the planner; the first tick t_0 also gives the segment [t_0, t_0 + step], at rest. Without
     a goal the vehicle holds the pose of the first tick, level, and the joints theirs.
     """
 
@@ -57,7 +57,7 @@ class MotionPlanner:
         self._times = _sample_times(config)
         self._tick: int | None = None
         self._plan: _Plan | None = None
-        self._goal: PathFollower | JointMotion | None = None
+        self._goal: PathFollower | JointTrajectory | None = None
         self._finished: GoalResult | None = None
         self._planned_error = 0.0
         self._max_planned_error = 0.0
@@ -76,7 +76,7 @@ class MotionPlanner:
         knot = self._plan.stop.end(self._plan.knot.stamp)
         if isinstance(goal, JointGoal):
             check_joint_goal(goal, knot.configuration[VEHICLE:], self._solver.joints)
-            self._goal = JointMotion(goal, knot.configuration, knot.stamp, self._config.step_s)
+            self._goal = JointTrajectory(goal, knot.configuration, knot.stamp, self._config.step_s)
         else:
             self._goal = self._follower(goal, knot)
         self._planned_error = self._max_planned_error = 0.0
@@ -92,7 +92,7 @@ class MotionPlanner:
         return PathFollower(self._solver, joined, knot.stamp, self._config.step_s)
 
     def cancel(self) -> None:
-        """Give the goal up and come to rest smoothly; without a goal nothing happens."""
+        """Abandon the goal and come to rest smoothly; without a goal nothing happens."""
         if self._goal is not None:
             self._end_goal(False, "cancelled")
 
@@ -142,7 +142,7 @@ class MotionPlanner:
         """The segment after the last knot: the goal's, or towards rest."""
         stamp, goal, samples = plan.knot.stamp, self._goal, None
         if goal is not None and goal.start <= stamp < goal.end:
-            if isinstance(goal, JointMotion):
+            if isinstance(goal, JointTrajectory):
                 samples = self._along_joints(plan, goal)
             else:
                 samples = self._along_path(plan, goal)
@@ -150,13 +150,13 @@ class MotionPlanner:
             plan.knot, samples = plan.stop.plan(plan.knot, self._times)
         return reference(self._solver.model, stamp, self._times, samples)
 
-    def _along_joints(self, plan: _Plan, goal: JointMotion) -> Samples:
+    def _along_joints(self, plan: _Plan, goal: JointTrajectory) -> Samples:
         plan.knot, samples = goal.plan(plan.knot, self._times)
         plan.stop = self._stop_from(plan.knot)
         return samples
 
     def _along_path(self, plan: _Plan, goal: PathFollower) -> Samples | None:
-        """The path's next segment; None, the goal being given up, where it cannot be reached."""
+        """The path's next segment; None, with the goal aborted, where it cannot be reached."""
         begin = goal.elapsed(plan.knot.stamp)
         step = goal.plan(plan.knot, self._times)
         self._diagnostics = StepDiagnostics.of(self._config.method, self._solver, step)
@@ -182,7 +182,7 @@ class MotionPlanner:
         if goal is None:
             return None
         elapsed = goal.elapsed(stamp)
-        if isinstance(goal, JointMotion):
+        if isinstance(goal, JointTrajectory):
             configuration = goal.sample(np.array([elapsed])).configuration[0]
             duration, wanted = goal.duration, tool_pose(self._solver.model, configuration)[0]
         else:
@@ -214,6 +214,6 @@ def _unreachable(goal: PathFollower, step: FollowedStep, config: PlannerConfig) 
     time = goal.elapsed(step.knot.stamp)
     allowed = config.projection.position_tolerance_m
     return (
-        f"given up at t = {time:g} s: the nearest reachable point is {step.choice.distance:.4g} m"
+        f"aborted at t = {time:g} s: the nearest reachable point is {step.choice.distance:.4g} m"
         f" away, allowed {allowed:g} m"
     )

@@ -1,4 +1,4 @@
-"""One planner step as the kernels see it: where the motion is, what it may do, what it must hit.
+"""One planner step in the form that the kernels take: state, bounds, target and weights.
 
 The planned configuration is c = (x, y, z, psi, q): the vehicle's position in map_ned (m), its yaw
 (rad; roll = pitch = 0 for the planned vehicle) and the joints (rad); m = 4 + n numbers. A candidate
@@ -16,7 +16,7 @@ VEHICLE = 4  # x, y, z, psi stand before the joints
 
 
 class StepProblem(NamedTuple):
-    """Everything a candidate is judged by (a named tuple, which numba takes as it is)."""
+    """Everything that decides how good a candidate is (a named tuple, which numba accepts)."""
 
     configuration: Array  # (m,) c at the start of the step
     previous: Array  # (m,) increment of the step before
@@ -26,7 +26,7 @@ class StepProblem(NamedTuple):
     jump: Array  # (m,) change of the increment at full acceleration
     readiness: Array  # (m,) inverse weights of the projection
     motion_weights: Array  # (m,) cost of an increment of one reach
-    position: Array  # (3,) m, where the end effector shall be at the end of the step
+    position: Array  # (3,) m, target of the end effector at the end of the step
     rotation: Array  # (3, 3) tool to map_ned at that time
     oriented: bool  # whether `rotation` counts
     position_tolerance: float  # m, e of eq. (17)

@@ -138,7 +138,7 @@ def project(model, problem, increment):
 def _shift(problem, increment, error):
     """Take what a Newton step left of a position error by moving the vehicle, where it may.
 
-    The tool's position is linear in x, y, z: the rest, of second order, is gone at once.
+    The tool's position is linear in x, y, z, so that this removes the second-order rest exactly.
     """
     for i in range(3):
         moved = increment[i] + error[i]

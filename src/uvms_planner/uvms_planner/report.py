@@ -1,4 +1,4 @@
-"""What the planner hands back each step."""
+"""Results of a planner step."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -18,7 +18,7 @@ class GoalFeedback:
     elapsed: float  # s that are done
     duration: float  # s, the whole goal
     planned_error: float  # m, of the last planned step against the path
-    tracking_error: float  # m, of the estimated end effector against where it shall be now
+    tracking_error: float  # m, distance of the estimated end effector from its present target
 
 
 @dataclass(frozen=True)

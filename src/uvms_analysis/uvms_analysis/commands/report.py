@@ -27,4 +27,4 @@ def run(options: Namespace) -> int:
     return 0
 
 
-COMMAND = Command("figures and an HTML page about a run", add_arguments, run)
+COMMAND = Command("figures and an HTML page about a run, or a 3-D picture", add_arguments, run)

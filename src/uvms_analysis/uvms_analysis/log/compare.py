@@ -1,4 +1,4 @@
-"""How far two logs are apart, topic by topic."""
+"""Differences between two logs, topic by topic."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, fields, is_dataclass
@@ -12,7 +12,7 @@ from uvms_core.topics import Topic
 
 @dataclass(frozen=True)
 class Difference:
-    """What a topic holds in both logs, and the greatest absolute difference of any number."""
+    """Message counts of a topic in both logs, and the greatest absolute difference in them."""
 
     topic: str
     recorded: int
@@ -22,7 +22,7 @@ class Difference:
 
 
 def compare(recorded: RunLog, replayed: RunLog, topics: Sequence[Topic]) -> list[Difference]:
-    """Differences of these topics; messages belong together by their stamps."""
+    """Differences of these topics; messages are matched by their stamps."""
     return [_compare(recorded, replayed, topic) for topic in topics]
 
 
@@ -43,10 +43,10 @@ def _distance(one: Any, two: Any) -> float:
     if not is_dataclass(one):
         return float(one != two)
     pairs = ((getattr(one, field.name), getattr(two, field.name)) for field in fields(one))
-    return max(_apart(a, b) for a, b in pairs)
+    return max(_difference(a, b) for a, b in pairs)
 
 
-def _apart(one: Any, two: Any) -> float:
+def _difference(one: Any, two: Any) -> float:
     a, b = np.asarray(one, dtype=float), np.asarray(two, dtype=float)
     if a.shape != b.shape:
         return float("inf")

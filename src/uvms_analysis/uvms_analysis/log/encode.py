@@ -1,4 +1,4 @@
-"""Signals straight to a log, without ROS: what the graph publishes, from the same dataclasses."""
+"""Write signals to a log without ROS, as the graph would publish them."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -28,7 +28,7 @@ class SignalWriter:
         self._channels: dict[str, tuple[str, str, Codec]] = {}
 
     def write(self, topic: Topic, signal: Any, stamp: int | None = None) -> None:
-        """One signal at its own stamp, or at the tick's where one is given."""
+        """One signal at its own stamp, or at the one given."""
         if stamp is None:
             stamp = signal if topic is CLOCK else signal.stamp
         self.write_plain(topic, to_message(topic, signal, self._names(signal)), stamp)

@@ -21,8 +21,8 @@ from uvms_core.yaml_text import parse_yaml
 RUN = "uvms"
 """Name of the metadata record about the run."""
 
-_TELLING = (topics.TRUE_ODOMETRY, topics.THRUSTER_COMMAND, topics.WRENCH_COMMAND, topics.IMU)
-"""Topics from whose full names the namespace is seen: no other topic's name ends as theirs do."""
+_UNIQUE_NAMES = (topics.TRUE_ODOMETRY, topics.THRUSTER_COMMAND, topics.WRENCH_COMMAND, topics.IMU)
+"""Topics that reveal the namespace: no other topic's name ends like theirs."""
 
 
 class Series:
@@ -48,10 +48,10 @@ class Series:
 
 
 class RunLog:
-    """A log in memory, unpacked and decoded only where it is asked for.
+    """A log in memory, unpacked and decoded on demand.
 
-    `fault` is empty, or says why the log is not complete; what lies before the break can be read.
-    Messages that are no valid signals (a NaN in a command, say) are left out and counted in
+    `fault` is empty, or says why the log is incomplete; everything before the break can be read.
+    Messages that are not valid signals (such as a NaN in a command) are left out and counted in
     `rejected`.
     """
 
@@ -71,13 +71,13 @@ class RunLog:
         """The log in a file.
 
         Raises:
-            LogError: there is no such file, it cannot be read, or it is no MCAP file.
+            LogError: there is no such file, it cannot be read, or it is not an MCAP file.
         """
         return cls(read_records(path))
 
     @property
     def run(self) -> dict[str, str]:
-        """What the log says of its run: scenario, seed, git revision, version, pace, command."""
+        """Metadata of the run: scenario, seed, git revision, version, pace, command."""
         return self.metadata.get(RUN, {})
 
     @property
@@ -125,7 +125,7 @@ class RunLog:
         return topic.resolve(self.namespace)
 
     def raw(self, names: Sequence[str] | None = None) -> Iterator[tuple[str, int, bytes]]:
-        """Full topic name, stamp and CDR bytes of messages as they lie in the file."""
+        """Full topic name, stamp and CDR bytes of messages in the order of the file."""
         wanted = None if names is None else {self._number(name) for name in names}
         channels = self._records.channels
         for number, stamp, data in self._records.messages(wanted):
@@ -181,7 +181,7 @@ class RunLog:
         return Series(np.array([one.stamp for one in signals], dtype=np.int64), columns)
 
     def statuses(self, node: str) -> list[Status]:
-        """Diagnostics of one node; names may carry a namespace or a title behind a colon."""
+        """Diagnostics of one node; names may have a namespace, or a title after a colon."""
         everything = self.signals(topics.DIAGNOSTICS) if self.has(topics.DIAGNOSTICS) else []
         return [one for one in everything if _node_of(one.name) == node]
 
@@ -199,7 +199,7 @@ class RunLog:
         return self._numbers[name]
 
     def _find_namespace(self) -> str:
-        for topic in _TELLING:
+        for topic in _UNIQUE_NAMES:
             for name in self._numbers:
                 if name.endswith("/" + topic.name):
                     return name.removesuffix(topic.name).strip("/")

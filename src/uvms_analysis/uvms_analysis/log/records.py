@@ -1,7 +1,7 @@
-"""The records of an MCAP file, whether or not its writer came to its end.
+"""The records of an MCAP file, complete or not.
 
-A file without its index is read from the start, chunk by chunk, to the last chunk that is whole;
-so a log of a run that was killed is as good as its last chunk, and says so.
+A file without its index is read from the start, chunk by chunk, up to the last complete chunk, so
+that the log of a killed run loses only what came after it; `Records.fault` says so.
 """
 
 import os
@@ -33,10 +33,10 @@ _READERS: dict[int, Callable[[bytes], Any]] = {
 _RECORD = struct.Struct("<BQ")
 _MESSAGE = struct.Struct("<HIQQ")
 
-UNFINISHED = "its writer did not come to its end, or its end is damaged"
+UNFINISHED = "the writer was stopped early, or the end of the file is damaged"
 
 _DAMAGE = (McapError, ZstdError, ValueError, KeyError, RuntimeError, MemoryError, struct.error)
-"""What the readers raise on bytes that are no records."""
+"""Raised by the readers on bytes that are not records."""
 
 Raw = tuple[int, int, bytes]
 """Channel number, log time in nanoseconds, data."""
@@ -44,7 +44,7 @@ Raw = tuple[int, int, bytes]
 
 @dataclass
 class Records:
-    """What a file holds; `fault` says why it is not complete, and is empty if it is."""
+    """The content of a file; `fault` says why it is incomplete, and is empty otherwise."""
 
     path: Path
     schemas: dict[int, Schema] = field(default_factory=dict)
@@ -55,7 +55,7 @@ class Records:
     fault: str = ""
 
     def messages(self, channels: set[int] | None = None) -> Iterator[Raw]:
-        """Messages of these channels, or of all, as they lie in the file."""
+        """Messages of these channels, or of all, in the order of the file."""
         for block in self.blocks:
             if isinstance(block, Message):
                 if channels is None or block.channel_id in channels:
@@ -65,10 +65,10 @@ class Records:
 
 
 def read_records(path: str | Path) -> Records:
-    """All records of a file up to its end, or to where it breaks off.
+    """All records of a file up to its end, or up to where it breaks off.
 
     Raises:
-        LogError: there is no such file, it cannot be read, or it is no MCAP file.
+        LogError: there is no such file, it cannot be read, or it is not an MCAP file.
     """
     records = Records(Path(path))
     try:
@@ -89,7 +89,7 @@ def _read(records: Records, file: BinaryIO, size: int) -> None:
         if length > size - file.tell():
             records.fault = UNFINISHED
             return
-        # Indexes are passed over: everything is read in order anyway.
+        # Indexes are skipped: everything is read in order anyway.
         if code in _READERS:
             damaged += not _stored(records, code, file.read(length))
         else:
@@ -101,7 +101,7 @@ def _read(records: Records, file: BinaryIO, size: int) -> None:
 
 
 def _stored(records: Records, code: int, body: bytes) -> bool:
-    """Whether the record is whole; if so, it is kept."""
+    """Whether the record is complete; if so, it is kept."""
     try:
         _store(records, code, body)
     except _DAMAGE:

@@ -1,4 +1,4 @@
-"""Makes a complete, indexed log of one whose writer did not come to its end."""
+"""Make a complete, indexed log from one whose writer was stopped."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,14 +10,14 @@ from uvms_analysis.log.writer import LogWriter
 
 @dataclass(frozen=True)
 class Recovery:
-    """What came of it: messages that were copied, and what had been wrong."""
+    """Number of messages copied, and what was wrong with the source."""
 
     message_count: int
     fault: str
 
 
 def recover(source: str | Path, target: str | Path) -> Recovery:
-    """Copy all whole chunks, attachments and metadata of a log into a fresh file.
+    """Copy all complete chunks, attachments and metadata of a log into a new file.
 
     Raises:
         LogError: the source cannot be read or is the target itself.

@@ -1,4 +1,4 @@
-"""What a log says of a channel: definition and hash of its type, quality of service offered."""
+"""Description of a channel in a log: definition and hash of its type, quality of service."""
 
 import yaml
 
@@ -45,7 +45,7 @@ class _NoAliases(yaml.SafeDumper):
 
 
 def channel_metadata(type_name: str, qos: str) -> dict[str, str]:
-    """Metadata of a channel in the manner of rosbag2; a type without a hash gets an empty one."""
+    """Metadata of a channel in the format of rosbag2; a type without a hash gets an empty one."""
     try:
         hash_text = type_hash(type_name)
     except DefinitionError:

@@ -1,7 +1,7 @@
-"""Writes a run to MCAP in the manner of rosbag2, safe against being killed.
+"""Write a run to MCAP in the format of rosbag2, safe against being killed.
 
 The writer is the mcap package's; mcap_ros2's would encode each message anew, many times slower than
-`uvms_core.cdr` does, and both leave what they buffer to be lost with the process.
+`uvms_core.cdr` does, and both lose what they have buffered when the process is killed.
 """
 
 import os
@@ -21,7 +21,7 @@ LIBRARY = "uvms"
 
 
 class _Unbuffered:
-    """A file that hands every write to the system at once, so that it outlives this process."""
+    """A file that passes every write to the system at once, so that a killed process loses none."""
 
     def __init__(self, path: Path) -> None:
         self._descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
@@ -79,7 +79,7 @@ class LogWriter:
         self._writer.add_metadata(name, {key: str(value) for key, value in values.items()})
 
     def write(self, topic: str, type_name: str, qos_yaml: str, stamp: int, data: bytes) -> None:
-        """One message: CDR bytes as they came, at a stamp in nanoseconds."""
+        """One message: CDR bytes as received, at a stamp in nanoseconds."""
         channel = self._channels.get(topic)
         if channel is None:
             channel = self._register(topic, type_name, qos_yaml)
@@ -87,11 +87,6 @@ class LogWriter:
             raise LogError(f"log {self.path}: {topic} is {channel[1]}, not {type_name}")
         self._writer.add_message(channel[0], stamp, data, stamp)
         self.message_count += 1
-
-    def declare(self, topic: str, type_name: str, qos_yaml: str) -> None:
-        """Make a channel known before its first message, or without any."""
-        if topic not in self._channels:
-            self._register(topic, type_name, qos_yaml)
 
     def _register(self, topic: str, type_name: str, qos: str) -> tuple[int, str]:
         self._copy_schema(type_name, lambda: schema.schema_text(type_name).encode())
@@ -116,7 +111,7 @@ class LogWriter:
     def copy_channel(
         self, topic: str, type_name: str, text: bytes, metadata: Mapping[str, str]
     ) -> None:
-        """Make a channel known as another log describes it; its type need not be installed."""
+        """Register a channel as another log describes it; its type need not be installed."""
         if topic not in self._channels:
             self._copy_schema(type_name, lambda: text)
             self._add_channel(topic, type_name, metadata)

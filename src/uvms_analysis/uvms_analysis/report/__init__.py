@@ -1,4 +1,4 @@
-"""`uvms report`: figures of a run in the manner of the paper's Figs. 7-9, and a page about it."""
+"""`uvms report`: figures of a run in the style of the paper's Figs. 7-9, and a page about it."""
 
 import json
 from collections.abc import Callable
@@ -37,7 +37,7 @@ FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
     ),
     "thrusters": ("Thrust as allocated; dotted: limits.", force_figures.thrusters),
     "navigation": (
-        "Estimated minus true position, and what the filter thinks of it.",
+        "Estimated minus true position, with the filter's own standard deviation.",
         force_figures.navigation,
     ),
 }
@@ -65,7 +65,7 @@ def report(log: str | Path, output: str | Path | None = None) -> Path:
 
 
 def _from_runner(run: RunLog) -> dict[str, Any]:
-    """What only the runner knows, from the summary beside the log if there is one."""
+    """Wall time and completion, from the summary beside the log if there is one."""
     beside = run.path.parent / "summary.json"
     try:
         known = json.loads(beside.read_text(encoding="utf-8"))

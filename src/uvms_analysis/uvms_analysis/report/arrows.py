@@ -10,6 +10,7 @@ from uvms_analysis.log.read import Series
 from uvms_analysis.report.posture import Posture, arrow, chord, tunnel
 from uvms_analysis.report.raycast import Shape
 from uvms_core.signals import Array
+from uvms_core.vehicle.hull import Hull
 
 THRUST, DISTURBANCE = "#0b7d5b", "#c2185b"
 LONGEST = 0.16
@@ -20,6 +21,15 @@ WIDTH = 0.0035
 """Radius of a shaft, as a part of the same distance."""
 
 
+@dataclass(frozen=True)
+class Push:
+    """A force in the body frame, and the two ends of the body on its line, m along the force."""
+
+    place: Array  # (3,) m
+    force: Array  # (3,) N
+    ends: tuple[float, float]
+
+
 @dataclass
 class Arrows:
     """Shapes, and what their colours mean."""
@@ -28,34 +38,66 @@ class Arrows:
     meaning: list[tuple[str, str]] = field(default_factory=list)
 
 
-def force_arrows(run: Analysis, posture: Posture) -> Arrows:
-    """Thrusts and the disturbance's force at the posture's time, all on one scale."""
-    thrust = _at(run.allocation, "thrust", posture.time)
-    parts = ("restoring", "coupling", "external")
-    wrench = np.sum([_at(run.disturbance, part, posture.time) for part in parts], axis=0)
-    force = np.asarray(wrench[:3])
+def force_arrows(run: Analysis, posture: Posture, to_viewer: Array) -> Arrows:
+    """Thrusts and the disturbance's force at the posture's time, all on one scale.
+
+    Each arrow stands outside the hull and, where it can, on the side of the viewer (`to_viewer`
+    (3,), map_ned), where it either leaves the vehicle or meets it.
+    """
+    groups = (
+        (THRUST, "thrust, up to", 1.0, _thrusts(run, posture.time)),
+        (DISTURBANCE, "disturbance,", 1.4, _disturbance(run, posture.time)),
+    )
+    greatest = max(float(np.linalg.norm(push.force)) for *_, pushes in groups for push in pushes)
     places = np.array([item.position_m for item in run.vehicle.thrusters])
     size = float(np.linalg.norm(np.ptp(places, axis=0)))
-    greatest = max(float(np.abs(thrust).max()), float(np.linalg.norm(force)), 1e-9)
-    scale, radius = LONGEST * size / greatest, WIDTH * size
+    scale, (position, R) = LONGEST * size / max(greatest, 1e-9), posture.pose
     found = Arrows()
-    position, R = posture.pose
-    for item, place, value in zip(run.vehicle.thrusters, places, thrust, strict=True):
-        along = np.array(item.direction)
-        if abs(value) >= SHORTEST * greatest:
-            start = place + tunnel(run.vehicle, place, along)[int(value > 0.0)] * along
-            span = scale * value * (R @ along)
-            found.shapes += arrow(position + R @ start, span, radius, to_rgb(THRUST))
-    if found.shapes:
-        found.meaning.append((THRUST, f"thrust, up to {np.abs(thrust).max():.2g} N"))
-    length = float(np.linalg.norm(force))
-    if length >= SHORTEST * greatest:
-        through = chord(run.vehicle.hull, np.array(run.vehicle.hull.cb_m), -force / length)
-        ends = through[1] * force / length if through is not None else np.zeros(3)
-        span = scale * R @ force
-        found.shapes += arrow(position - R @ ends - span, span, 1.4 * radius, to_rgb(DISTURBANCE))
-        found.meaning.append((DISTURBANCE, f"disturbance, {length:.2g} N"))
+    for colour, text, thickness, pushes in groups:
+        shown = [p for p in pushes if np.linalg.norm(p.force) > SHORTEST * greatest]
+        for push in shown:
+            start = _start(run.vehicle.hull, push, scale, R.T @ to_viewer)
+            radius, span = thickness * WIDTH * size, scale * R @ push.force
+            found.shapes += arrow(position + R @ start, span, radius, to_rgb(colour))
+        if shown:
+            most = max(float(np.linalg.norm(push.force)) for push in shown)
+            found.meaning.append((colour, f"{text} {most:.2g} N"))
     return found
+
+
+def _thrusts(run: Analysis, time: float) -> list[Push]:
+    pushes = []
+    for item, value in zip(run.vehicle.thrusters, _at(run.allocation, "thrust", time), strict=True):
+        place, along = np.array(item.position_m), np.array(item.direction)
+        first, last = tunnel(run.vehicle, place, along)
+        ends = (first, last) if value >= 0.0 else (-last, -first)
+        pushes.append(Push(place, value * along, ends))
+    return pushes
+
+
+def _disturbance(run: Analysis, time: float) -> list[Push]:
+    """Restoring, coupling and external force together, as if at the centre of buoyancy."""
+    parts = ("restoring", "coupling", "external")
+    wrench = np.sum([_at(run.disturbance, part, time) for part in parts], axis=0)
+    force, place = np.asarray(wrench[:3]), np.array(run.vehicle.hull.cb_m)
+    length = float(np.linalg.norm(force))
+    ends = chord(run.vehicle.hull, place, force / length) if length > 0.0 else None
+    return [Push(place, force, ends or (0.0, 0.0))]
+
+
+def _start(hull: Hull, push: Push, scale: float, to_viewer: Array) -> Array:
+    """Where the arrow begins (3,), body frame: it leaves the vehicle, or its tip meets it."""
+    span = scale * push.force
+    along = span / np.linalg.norm(span)
+    leaving = push.place + push.ends[1] * along
+    meeting = push.place + push.ends[0] * along - span
+    free = [start for start in (leaving, meeting) if not _inside(hull, start + 0.5 * span, along)]
+    return max(free or [leaving], key=lambda start: float((start + 0.5 * span) @ to_viewer))
+
+
+def _inside(hull: Hull, point: Array, along: Array) -> bool:
+    through = chord(hull, point, along)
+    return through is not None and through[0] < 0.0 < through[1]
 
 
 def _at(series: Series, name: str, time: float) -> Array:

@@ -1,4 +1,4 @@
-"""Figures of what pushes the vehicle, and of how well it knows where it is."""
+"""Figures of the forces on the vehicle, and of its navigation error."""
 
 import numpy as np
 from matplotlib.axes import Axes
@@ -12,7 +12,7 @@ MOMENT = ("K", "M", "N")
 
 
 def self_disturbance(run: Analysis) -> Figure:
-    """Restoring and coupling wrench, forces and moments, true; what the observer saw in grey."""
+    """Restoring and coupling wrench, forces and moments, true; the observed ones in grey."""
     figure = style.new_figure(5.6)
     grid = figure.subplots(2, 2, sharex=True)
     for row, part in zip(grid, ("restoring", "coupling"), strict=True):
@@ -33,7 +33,7 @@ def self_disturbance(run: Analysis) -> Figure:
 
 
 def thrusters(run: Analysis) -> Figure:
-    """Thrust of each thruster with its limits, ticks at the limits marked, and what is missing."""
+    """Thrust of each thruster with its limits, ticks at a limit marked, and the missing wrench."""
     items = run.vehicle.thrusters
     count = -(-(len(items) + 1) // 2)
     figure = style.new_figure(0.8 + 1.55 * count)
@@ -67,14 +67,14 @@ def _thruster(axes: Axes, run: Analysis, index: int, name: str, limit: float) ->
 
 
 def _missing(axes: Axes, run: Analysis) -> None:
-    """Length of the part of the commanded wrench that the thrusters do not give."""
+    """Length of the part of the commanded wrench that the thrusters do not deliver."""
     time, residual = run.allocation.time, run.allocation.residual
     force = np.linalg.norm(residual[:, :3], axis=1)
     moment = np.linalg.norm(residual[:, 3:], axis=1)
     axes.plot(style.thin(time), style.thin(force), color="black", label="force / N")
     axes.plot(style.thin(time), style.thin(moment), color=style.COLORS[1], label="moment / N m")
     axes.set_ylim(0.0, max(1.15 * float(np.max([force, moment])), 1e-3))
-    axes.set_title("commanded, not given", fontsize=9)
+    axes.set_title("commanded, not delivered", fontsize=9)
     style.legend(axes)
 
 

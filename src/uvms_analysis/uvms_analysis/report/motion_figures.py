@@ -1,4 +1,4 @@
-"""Figures of how vehicle, joints and end effector move."""
+"""Figures of the motion of vehicle, joints and end effector."""
 
 from typing import Any
 
@@ -15,12 +15,12 @@ PLANES = (("north", "east", 0, 1), ("north", "down", 0, 2), ("east", "down", 1, 
 TARGETS = {
     "path": "path",
     "reference": "as planned",
-    "start": "start, to be held",
+    "start": "start (held)",
 }
 
 
 def joints(run: Analysis) -> Figure:
-    """Joint angles over time, with what was planned and the limits."""
+    """Joint angles over time, with the plan and the limits."""
     names, time = run.vehicle.joint_names, run.joints.time
     degrees = np.rad2deg(run.joints.position)
     figure = style.new_figure(1.2 + 1.25 * len(names))
@@ -43,7 +43,7 @@ def joints(run: Analysis) -> Figure:
 
 
 def _limits(axes: Axes, low: float, high: float) -> None:
-    """Limits as lines where they lie in view."""
+    """Limits as lines, where they are in view."""
     bottom, top = axes.get_ylim()
     for limit in (low, high):
         if bottom <= limit <= top:
@@ -51,7 +51,7 @@ def _limits(axes: Axes, low: float, high: float) -> None:
 
 
 def attitude_limits(run: Analysis) -> tuple[float | None, float | None]:
-    """Greatest roll and pitch in degrees that the planner allows, None where it does not say."""
+    """Greatest roll and pitch in degrees that the planner allows, None where it has no limit."""
     found: dict[str, float] = {}
     _search(run.log.configuration().get("planner", {}), found)
     return found.get("roll"), found.get("pitch")
@@ -94,17 +94,17 @@ def end_effector(run: Analysis) -> Figure:
     """The end effector in space and in three planes against its target, and the error."""
     figure = style.new_figure(7.4)
     grid = figure.add_gridspec(3, 3, height_ratios=(1.0, 1.0, 0.85))
-    wanted, true = run.target.position, run.end_effector[run.target.index]
+    target, true = run.target.position, run.end_effector[run.target.index]
     label = TARGETS[run.target.kind]
     space = figure.add_subplot(grid[:2, :2], projection="3d")
-    space.plot(*style.thin(wanted).T, label=label, **style.REFERENCE)
+    space.plot(*style.thin(target).T, label=label, **style.REFERENCE)
     space.plot(*style.thin(true).T, color=style.COLORS[0], label="true")
-    _cube(space, np.vstack([wanted, true]))
+    _cube(space, np.vstack([target, true]))
     space.legend(loc="upper left")
     spots = (grid[0, 2], grid[1, 2], grid[2, 2])
     for spot, (across, up, i, j) in zip(spots, PLANES, strict=True):
         axes = figure.add_subplot(spot)
-        axes.plot(style.thin(wanted[:, i]), style.thin(wanted[:, j]), **style.REFERENCE)
+        axes.plot(style.thin(target[:, i]), style.thin(target[:, j]), **style.REFERENCE)
         axes.plot(style.thin(true[:, i]), style.thin(true[:, j]), color=style.COLORS[0])
         axes.set_xlabel(f"{across} / m")
         axes.set_ylabel(f"{up} / m")

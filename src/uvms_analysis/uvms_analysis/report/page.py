@@ -1,4 +1,4 @@
-"""The page about a run: one HTML file that needs nothing beside itself."""
+"""The page about a run: one self-contained HTML file."""
 
 import base64
 import html
@@ -14,7 +14,7 @@ CSS = Path(__file__).with_name("page.css")
 
 @dataclass(frozen=True)
 class Picture:
-    """A figure with its caption, or the reason why there is none."""
+    """A figure with its caption, or the reason why it is missing."""
 
     name: str
     caption: str
@@ -62,8 +62,8 @@ def _document(title: str, body: str) -> str:
 
 
 def _head(title: str, summary: dict[str, Any]) -> str:
-    word, kind = ("completed", "good") if summary["completed"] else ("not completed", "bad")
-    return f'<header><h1>{html.escape(title)}</h1><span class="badge {kind}">{word}</span></header>'
+    text, kind = ("completed", "good") if summary["completed"] else ("not completed", "bad")
+    return f'<header><h1>{html.escape(title)}</h1><span class="badge {kind}">{text}</span></header>'
 
 
 def _notes(summary: dict[str, Any]) -> str:
@@ -72,9 +72,9 @@ def _notes(summary: dict[str, Any]) -> str:
         notes.append(f"The log is not complete: {summary['log_fault']}.")
     if summary["rejected_messages"]:
         named = ", ".join(f"{count} of {n}" for n, count in summary["rejected_messages"].items())
-        notes.append(f"Messages that are no valid signals are left out: {named}.")
+        notes.append(f"Invalid messages are left out: {named}.")
     if summary["lockstep_timeouts"]:
-        notes.append(f"The plant went on without a command {summary['lockstep_timeouts']} times.")
+        notes.append(f"The plant continued without a command {summary['lockstep_timeouts']} times.")
     return "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes)
 
 

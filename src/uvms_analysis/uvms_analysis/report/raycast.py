@@ -84,7 +84,7 @@ def frame(
     corners = np.concatenate([_corners(s, _BALL if s.kind == "sphere" else _BOX) for s in shapes])
     low, high = corners.min(axis=0), corners.max(axis=0)
     middle, distance = (low + high) / 2, DISTANCE * float(np.linalg.norm(high - low))
-    R = _camera_axes(*view_deg)
+    R = camera_axes(*view_deg)
     position = middle + distance * R[:, 2]
     pixels = Camera(position, R, 1.0, size).project(corners) - np.array(size) / 2
     room = (1.0 - 2.0 * margin) * np.array(size)
@@ -93,7 +93,7 @@ def frame(
     return Camera(position, R, focal, size, (across, down), distance * size[1] / focal)
 
 
-def _camera_axes(azimuth_deg: float, elevation_deg: float) -> Array:
+def camera_axes(azimuth_deg: float, elevation_deg: float) -> Array:
     """Axes (3, 3) of a camera on this side of what it looks at, with down (z) pointing down."""
     azimuth, elevation = np.radians([azimuth_deg, elevation_deg])
     flat = np.cos(elevation)

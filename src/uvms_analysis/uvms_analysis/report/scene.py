@@ -21,7 +21,16 @@ from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import style
 from uvms_analysis.report.arrows import Arrows, force_arrows
 from uvms_analysis.report.posture import Posture, ball, body_shapes, rod
-from uvms_analysis.report.raycast import Camera, Layer, Shape, blend, frame, render, shrink
+from uvms_analysis.report.raycast import (
+    Camera,
+    Layer,
+    Shape,
+    blend,
+    camera_axes,
+    frame,
+    render,
+    shrink,
+)
 from uvms_core import topics
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.rotations import quat_to_matrix
@@ -56,6 +65,7 @@ VIEW = (62.0, 14.0)
 
 TIME = LinearSegmentedColormap.from_list("time", ["#0a3d91", "#8e2d8f", "#e8590c"])
 INK = "#22313f"
+SI = {"m": 1.0, "cm": 0.01, "mm": 0.001}
 TARGETS = {"path": "as asked for", "reference": "as planned", "start": "start"}
 PATH_COLOUR = (0.25, 0.30, 0.35)
 
@@ -98,7 +108,7 @@ def scene(
     indices = _instants(run, times_s)
     postures = [_posture(run, index) for index in indices]
     bodies = [body_shapes(run.vehicle, posture) for posture in postures]
-    arrows = force_arrows(run, postures[-1])
+    arrows = force_arrows(run, postures[-1], camera_axes(*view_deg)[:, 2])
     camera = frame([s for body in bodies for s in body] + arrows.shapes, view_deg, _fine(SIZE))
     tube = _tube(run.end_effector, run.truth.time, TUBE * camera.height_m)
     figure = Figure(figsize=(SIZE[0] / DOTS_PER_INCH, SIZE[1] / DOTS_PER_INCH))
@@ -200,7 +210,13 @@ def _inset(axes: Axes, run: Analysis, view_deg: tuple[float, float]) -> None:
     axes.grid(False)
     for spine in axes.spines.values():
         spine.set(visible=True, color="#b8c4cf", linewidth=1.0)
-    axes.text(16, 26, f"true path; thin: {TARGETS[run.target.kind]}", color=INK, fontsize=10)
+    axes.text(
+        16,
+        26,
+        "true path" + (f"; thin: {TARGETS[run.target.kind]}" if asked else ""),
+        color=INK,
+        fontsize=10,
+    )
     _scale_bar(axes, camera, size)
 
 
@@ -212,14 +228,21 @@ def _scale_bar(axes: Axes, camera: Camera, size: tuple[int, int]) -> None:
     pixels = length / camera.height_m * size[1]
     left, low = 16.0, size[1] - 16.0
     axes.plot([left, left + pixels], [low, low], color=INK, linewidth=2.0, solid_capstyle="butt")
-    text = f"{length:g} m" if length >= 1.0 else f"{100 * length:g} cm"
+    units = ((1.0, "m"), (0.01, "cm"), (0.0, "mm"))
+    unit = next(name for least, name in units if length >= 0.999 * least)
+    text = f"{length / SI[unit]:g} {unit}"
     axes.text(left, low - 8.0, text, color=INK, fontsize=10)
 
 
 def _label_postures(axes: Axes, camera: Camera, postures: Sequence[Posture], tools: Array) -> None:
-    """The time of each posture beside its tool, on the side of the picture's middle."""
+    """The time of each posture beside its tool, the solid one first; none over another."""
     middle = SIZE[0] / 2
-    for posture, (x, y) in zip(postures, camera.project(tools) / SMOOTH, strict=True):
+    taken: list[Array] = []
+    places = camera.project(tools) / SMOOTH
+    for posture, (x, y) in reversed(list(zip(postures, places, strict=True))):
+        if any(np.hypot(x - a, y - b) < LABEL_GAP for a, b in taken):
+            continue
+        taken.append(np.array([x, y]))
         side = 1 if x < middle else -1
         axes.annotate(
             f"{posture.time:.0f} s",

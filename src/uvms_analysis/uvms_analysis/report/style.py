@@ -1,4 +1,4 @@
-"""How the figures look."""
+"""Style of the figures."""
 
 from collections.abc import Sequence
 from typing import Any
@@ -12,7 +12,7 @@ from matplotlib.figure import Figure
 from uvms_core.signals import Array
 
 COLORS = ("#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#000000")
-"""Okabe and Ito's, which people with colour blindness can tell apart."""
+"""The palette of Okabe and Ito, which people with colour blindness can distinguish."""
 
 REFERENCE: dict[str, Any] = {"color": "#444444", "linewidth": 0.9, "linestyle": (0, (4, 2))}
 LIMIT: dict[str, Any] = {"color": "#b22222", "linewidth": 0.8, "linestyle": (0, (1, 1.5))}
@@ -44,11 +44,11 @@ WIDTH = 9.2
 """Inches."""
 
 POINTS = 6000
-"""More points than this along a line cannot be seen."""
+"""Points that a line has at most; more would be invisible."""
 
 
 def settings() -> Any:
-    """A context in which figures look as they should."""
+    """A context with the settings of all figures."""
     return matplotlib.rc_context(_SETTINGS)
 
 
@@ -58,7 +58,7 @@ def new_figure(height: float) -> Figure:
 
 
 def thin(values: Array) -> Array:
-    """Every so-many-th sample, so that a line has at most `POINTS`."""
+    """Every n-th sample, so that a line has at most `POINTS`."""
     return values[:: max(1, -(-len(values) // POINTS))]
 
 
@@ -82,12 +82,12 @@ def time_axis(axes: Axes, time: Array) -> None:
 
 
 def room(axes: Axes, values: Array, least: float) -> None:
-    """Limits that show the values, but never magnify less than `least` to the full height."""
+    """Limits that show the values, but span at least `least`."""
     _limit(axes, float(np.min(values)), float(np.max(values)), least)
 
 
 def room_but_peaks(axes: Axes, values: Array, least: float) -> None:
-    """As `room`, but a few peaks do not squeeze all the rest; the greatest is told instead."""
+    """As `room`, but cut off a few peaks that would dwarf the rest, and print the greatest."""
     low, high = np.percentile(values, (0.1, 99.9))
     room_for = 1.5 * max(high - low, least)
     peak = float(values.flat[np.argmax(np.abs(values))])
@@ -105,5 +105,5 @@ def _limit(axes: Axes, low: float, high: float, least: float) -> None:
 
 
 def ticks(count: int) -> Any:
-    """At most so many round ticks."""
+    """A locator of at most `count` round ticks."""
     return matplotlib.ticker.MaxNLocator(count)

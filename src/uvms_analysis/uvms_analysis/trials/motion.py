@@ -7,7 +7,7 @@ from scipy.interpolate import BSpline, make_lsq_spline
 from uvms_analysis.trials.convention import joint_angles
 from uvms_analysis.trials.read import Trial
 from uvms_core.signals import Array
-from uvms_dynamics.simulation.prescribed import JointMotion
+from uvms_dynamics.simulation.prescribed import PrescribedJoints
 
 SAMPLES_PER_KNOT = 5
 """At 25 Hz a knot every 0.2 s: the spline follows the arm, not the encoders' quantisation."""
@@ -18,7 +18,7 @@ LONGEST_STEP_S = 0.05
 _CUBIC = 3
 
 
-def joint_motion(trial: Trial) -> tuple[JointMotion, NDArray[np.int64]]:
+def joint_motion(trial: Trial) -> tuple[PrescribedJoints, NDArray[np.int64]]:
     """The motion for `float_freely`, and the index (k,) of each sample among its states.
 
     A least-squares cubic spline of the measured angles: its accelerations are continuous and match
@@ -30,7 +30,7 @@ def joint_motion(trial: Trial) -> tuple[JointMotion, NDArray[np.int64]]:
     times = np.sort(np.concatenate([edges, 0.5 * (edges[1:] + edges[:-1])]))
     spline = _spline(trial.t, joint_angles(trial.alpha))
     rows = [np.ascontiguousarray(spline(times, order)) for order in range(3)]
-    return JointMotion(np.diff(edges), *rows), index
+    return PrescribedJoints(np.diff(edges), *rows), index
 
 
 def _spline(t: Array, angles: Array) -> BSpline:

@@ -20,7 +20,8 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model, restoring_wrench
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_dynamics.simulation.prescribed import JointMotion, Load, float_freely
+from uvms_dynamics.simulation.prescribed import Load, PrescribedJoints, float_freely
+from uvms_dynamics.simulation.tether import tether_load_at
 
 _LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 _ON_ITS_SIDE = np.array([np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)])  # rolled by 90 degrees
@@ -30,7 +31,7 @@ class PreparedTrial(NamedTuple):
     """A trial with everything worked out that does not depend on the vehicle."""
 
     trial: Trial
-    motion: JointMotion
+    motion: PrescribedJoints
     samples: NDArray[np.int64]  # (k,) indices of the samples among the states
     start: Start
     depth: Array  # (k,) measured, m; used by `uvms identify` only
@@ -51,22 +52,14 @@ def prepare_trial(trial: Trial) -> PreparedTrial:
 
 
 def drive_model(vehicle: Vehicle) -> tuple[Model, Load]:
-    """Tables of the vehicle and its tether's load; TrialError unless its joints are the trials'."""
+    """Table of the vehicle, and no further load; TrialError unless its joints are the trials'."""
     names = tuple(joint.name for joint in vehicle.arm.joints)
     if names != JOINTS:
         raise TrialError(
             f"vehicle {vehicle.name} has {len(names)} joints: {', '.join(names) or 'none'}; the"
             f" trials' arm has {len(JOINTS)}: {', '.join(JOINTS)} (columns q_e, q_d, q_c, q_b)"
         )
-    tether = vehicle.tether
-    if tether is None:
-        return build_model(vehicle), Load()
-    load = Load(
-        weight_per_m=tether.weight_per_m_n,
-        moment_per_m=np.array(tether.moment_per_m_nm),
-        reference_depth=tether.reference_depth_m,
-    )
-    return build_model(vehicle), load
+    return build_model(vehicle), Load()
 
 
 def dynamic(prepared: PreparedTrial, model: Model, load: Load, trim: bool = True) -> Prediction:
@@ -88,7 +81,8 @@ def trimmed(prepared: PreparedTrial, model: Model, load: Load) -> Load:
     for the trial, the rest fades (the best estimate of a constant plus a first-order Gauss-Markov
     process of which one value is known).
     """
-    first = first_moment(model, prepared.motion.q[0]) + _loaded(load, prepared.start.state[2])
+    depth = prepared.start.state[2]
+    first = first_moment(model, prepared.motion.q[0]) + _loaded(model, load, depth)
     measured = down_direction(prepared.start.tilt)
     added = first[2] * measured / measured[2] - first
     return load._replace(
@@ -102,7 +96,7 @@ def quasi_static(prepared: PreparedTrial, model: Model, load: Load, depth: Array
     """Balance of weight and buoyancy at every sample, depth (k,) given; no initial state."""
     angles = joint_angles(prepared.trial.alpha)
     moments = [
-        first_moment(model, q) + _loaded(load, d) for q, d in zip(angles, depth, strict=True)
+        first_moment(model, q) + _loaded(model, load, d) for q, d in zip(angles, depth, strict=True)
     ]
     return Prediction(tilt_deg(_direction(np.array(moments))), depth)
 
@@ -124,8 +118,9 @@ def first_moment(model: Model, q: Array) -> Array:
     return np.array([-level[4], level[3], -side[3]])
 
 
-def _loaded(load: Load, depth: float) -> Array:
-    return np.asarray(load.moment + load.moment_per_m * (depth - load.reference_depth))
+def _loaded(model: Model, load: Load, depth: float) -> Array:
+    """First moment (3,) of the load and of the vehicle's tether."""
+    return np.asarray(load.moment + np.array(tether_load_at(model, len(JOINTS), depth)[1:]))
 
 
 def _direction(moment: Array) -> Array:

@@ -1,10 +1,10 @@
 """The thrust allocator: one commanded wrench to thrusts within their limits.
 
-Weighted least squares is the default: when thrusters saturate, the axes of low weight give way
-first, so that roll and pitch (by which the arm would tip the vehicle) keep their moment while the
-force that holds position falls short for a while. Preserving the direction instead scales the
-whole wrench down: nothing is bent, but a lack of heave costs as much roll moment. For a vehicle
-whose attitude the arm disturbs the first is the better choice; the second is a switch.
+Weighted least squares is the default: when thrusters saturate, the axes of low weight lose their
+share first, so that roll and pitch (by which the arm would tip the vehicle) keep their moment while
+the force that holds position falls short for a while. Preserving the direction instead scales the
+whole wrench down: its direction is kept, but a shortage of heave force costs as much roll moment.
+Where the arm disturbs the attitude, the first is the better choice; the second is an option.
 """
 
 import numpy as np
@@ -31,7 +31,7 @@ class ThrustAllocator:
     """min |W (B u - tau)|^2 + eps |u / u_max|^2 with |u| <= u_max, by an active-set method."""
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig):
-        """`vehicle` from `uvms_dynamics.load_vehicle`; any number of thrusters."""
+        """`vehicle` from `uvms_core.vehicle.load_vehicle`; any number of thrusters."""
         matrix = thruster_matrix(vehicle)
         limits, slew = thruster_limits(vehicle)
         self._setup(matrix, limits, slew, config)

@@ -4,19 +4,18 @@
 
 Each variable is free or held at one of its bounds (`state` 0, -1 or +1). The loop minimises over
 the free variables, walks towards that minimum until a bound is met, holds the variable there, and
-once the minimum is reached frees the held variable whose multiplier has the most wrong sign
+once the minimum is reached frees the held variable with the most negative multiplier
 (Nocedal and Wright, Numerical Optimization, section 16.5). H is positive definite and bounds are
 linearly independent, so that a freed variable always moves and the objective strictly falls: no
 set of held variables comes back, and the method ends after finitely many steps.
 
 Own code because compiled kernels can call it, and for its speed: the whole allocation of a wrench
-from Python takes about as long as the solution alone by daqp (ratio 0.95), 0.67 of quadprog's, 0.09
-of scipy's bvls (`make bench ARGS=allocation`).
+from Python takes as long as daqp's solution alone (ratio 0.95), 0.67 of quadprog's time and 0.09 of
+that of scipy's bvls (`make bench ARGS=allocation`).
 """
 
 import numpy as np
 
-from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
 FREE, AT_LOWER, AT_UPPER = 0, -1, 1
@@ -110,7 +109,7 @@ def _walk(lower, upper, u, state, free, count, direction):
 
 @exact_inner
 def _release(gradient, lower, upper, state, tolerance):
-    """Free the held variable whose multiplier is most wrong; False when all are right (optimal)."""
+    """Free the held variable with the worst multiplier; False if none is wrong (optimal)."""
     worst, which = tolerance, -1
     for i in range(state.size):
         if state[i] == FREE or lower[i] == upper[i]:
@@ -154,23 +153,3 @@ def solve_box_qp(hessian, g, lower, upper, u, state, max_steps):
         if not _release(gradient, lower, upper, state, MULTIPLIER_TOLERANCE * scale):
             return step + 1
     return TOO_MANY_STEPS
-
-
-def solve_box_qp_numpy(hessian: Array, g: Array, lower: Array, upper: Array) -> Array:
-    """The same minimum by trying every assignment of bounds in turn: slow, but plainly right.
-
-    u is the minimum exactly when the free gradient vanishes, u lies in the box, and the gradient
-    pushes held variables outwards (Karush-Kuhn-Tucker). For up to about eight variables.
-    """
-    best, best_violation = np.clip(np.zeros_like(g), lower, upper), np.inf
-    for code in np.ndindex(*(3,) * g.size):
-        state = np.array(code) - 1
-        u = np.where(state == AT_LOWER, lower, upper)
-        free = state == FREE
-        held_load = hessian[:, ~free] @ u[~free] + g
-        u[free] = np.linalg.solve(hessian[np.ix_(free, free)], -held_load[free])
-        multiplier = -state * (hessian @ u + g)
-        violation = max(np.max(lower - u), np.max(u - upper), np.max(-multiplier, initial=0.0))
-        if violation < best_violation:
-            best, best_violation = u, violation
-    return best

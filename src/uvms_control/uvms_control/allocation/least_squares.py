@@ -44,7 +44,7 @@ class BoundedLeastSquares:
         high = np.ones_like(self.limits) if upper is None else upper / self.limits
         steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
         if steps == TOO_MANY_STEPS:
-            # A warm start can at worst cost steps; from zero the count says something is wrong.
+            # A bad warm start only costs steps; when it fails from zero too, something is wrong.
             self.reset()
             steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
         if steps < 0:

@@ -1,4 +1,4 @@
-"""A type's CDR encoder and decoder, made once from its definition."""
+"""CDR encoder and decoder of a type, compiled once from its definition."""
 
 import struct
 from collections.abc import Mapping
@@ -8,16 +8,16 @@ from typing import Any
 from uvms_core.cdr.decode import make_decoder
 from uvms_core.cdr.definitions import schema_text
 from uvms_core.cdr.encode import HEADER, make_encoder
-from uvms_core.cdr.errors import CdrError
 from uvms_core.cdr.parse import parse_schema
+from uvms_core.errors import CdrError
 
 
 class Codec:
-    """Messages of one type to bytes and back; the type may come from a log, unknown before.
+    """Messages of one type to bytes and back; the definition may come from a log.
 
-    The functions are compiled from the definition, in the way of the standard library's
-    dataclasses. An Odometry takes some microseconds each way, where the general interpreter of
-    mcap_ros2 takes fifty; the tests hold it against mcap_ros2 and rosbags.
+    The functions are compiled from the definition, as the standard library does for dataclasses.
+    An Odometry takes a few microseconds each way, while the general interpreter of mcap_ros2 takes
+    fifty; the tests compare with mcap_ros2 and rosbags.
     """
 
     def __init__(self, name: str, text: str) -> None:

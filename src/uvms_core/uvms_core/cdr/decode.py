@@ -11,7 +11,6 @@ from uvms_core.cdr.layout import Alignment, Source
 from uvms_core.cdr.parse import PRIMITIVES, SEQUENCE, STRING, Field
 
 Types = Mapping[str, tuple[Field, ...]]
-DUMMY = "structure_needs_at_least_one_member"
 
 
 class _Decoder:
@@ -23,10 +22,10 @@ class _Decoder:
         self.align = Alignment()
         self.format = "<"
         self.targets: list[str] = []
-        self.later: list[str] = []  # objects made of numbers that are not yet read
+        self.later: list[str] = []  # objects that need numbers not read yet
 
     def flush(self) -> None:
-        """Read the numbers collected so far, then make what is made of them."""
+        """Read the numbers collected so far, then make the objects that need them."""
         size = struct.calcsize(self.format)
         if self.targets:
             unpack = self.source.bind("unpack", struct.Struct(self.format).unpack_from)
@@ -71,7 +70,7 @@ class _Decoder:
         if field.length == SEQUENCE:
             count = self.number("I", 4)
             self.flush()
-            if size > 4:  # an empty sequence has no padding behind its length
+            if size > 4:  # an empty sequence has no padding after its length
                 self.source.line(f"if {count}: p += (4 - p) & {size - 1}")
         else:
             self.pad(size)

@@ -4,7 +4,7 @@ A type `package/msg/Name` is defined in `share/package/msg/Name.msg` of a ROS pr
 those of AMENT_PREFIX_PATH and the Python environment itself, into which the ROS wheels install.
 The text for a log is the root definition, then, breadth first, each dependency after a line of 80
 equals signs and `MSG: package/Name`, as rosbag2 has it. The messages of an action's hidden topics
-are not among them: they exist in no file, and readers refuse their names for the underscore.
+are not supported: no file defines them, and readers reject their names because of the underscore.
 """
 
 import json
@@ -14,8 +14,8 @@ from collections import deque
 from functools import cache
 from pathlib import Path
 
-from uvms_core.cdr.errors import DefinitionError
 from uvms_core.cdr.parse import parse_fields
+from uvms_core.errors import DefinitionError
 
 SEPARATOR = "=" * 80
 
@@ -38,7 +38,7 @@ def _find(package: str, kind: str, file: str) -> Path:
 
 
 def split_type(name: str) -> tuple[str, str, str]:
-    """`package/kind/Name` in its parts."""
+    """The parts of `package/kind/Name`."""
     parts = name.split("/")
     if len(parts) != 3 or not all(parts):
         raise DefinitionError(f"{name!r} is not a type name such as 'nav_msgs/msg/Odometry'")

@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
-from uvms_core.cdr.errors import CdrError
 from uvms_core.cdr.layout import Alignment, Source
 from uvms_core.cdr.parse import PRIMITIVES, SEQUENCE, STRING, Field
+from uvms_core.errors import CdrError
 
 HEADER = b"\x00\x01\x00\x00"
 """Encapsulation: plain CDR, little endian."""
@@ -82,7 +82,7 @@ class _Encoder:
             return
         self.number("I", 4, f"len({name}) // {size}")
         self.flush()
-        # An empty sequence has no padding behind its length.
+        # An empty sequence has no padding after its length.
         padding = f"bytes((4 - len(b)) & {size - 1}) + " if size > 4 else ""
         self.source.line(f"if {name}: b += {padding}{name}")
         self.align.set(min(size, 4))

@@ -1,8 +1,8 @@
-"""Source text of functions that walk a message, with what is known of the alignment.
+"""Builds the source of functions that walk a message, and tracks the alignment.
 
-In CDR a number lies at a multiple of its size from the start of the message. After a text only the
-remainder by 1 is known, so padding is computed when the function runs; else it is known when it
-is made, and neighbouring numbers go into one call of `struct`.
+In CDR a number is at a multiple of its size from the start of the message. After a string the
+position is unknown, so that padding is computed when the function runs; otherwise it is known when
+the function is made, and neighboring numbers go into one call of `struct`.
 """
 
 INDENT = "    "
@@ -27,7 +27,7 @@ class Alignment:
         self.offset = (self.offset + size) % self.modulus
 
     def set(self, modulus: int) -> None:
-        """All that is known: the position is a multiple of `modulus`."""
+        """Only this is known: the position is a multiple of `modulus`."""
         self.modulus, self.offset = modulus, 0
 
 

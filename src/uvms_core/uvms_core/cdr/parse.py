@@ -1,9 +1,9 @@
-"""Message definitions to fields."""
+"""Reads message definitions."""
 
 import re
 from dataclasses import dataclass
 
-from uvms_core.cdr.errors import DefinitionError
+from uvms_core.errors import DefinitionError
 
 PRIMITIVES: dict[str, tuple[str, int]] = {
     "bool": ("?", 1),
@@ -24,7 +24,7 @@ PRIMITIVES: dict[str, tuple[str, int]] = {
 
 STRING = "string"
 SEQUENCE = -1
-"""Length of an array that carries its own."""
+"""Length of an array that is stored with its length."""
 
 _TYPE = re.compile(
     r"^(?P<type>[A-Za-z][\w/]*)(<=\d+)?(?P<array>\[(?P<bound><=)?(?P<count>\d*)\])?$"

@@ -1,4 +1,4 @@
-"""The vehicle as viewers know it, free of ROS: a URDF and the transforms of its frames."""
+"""The vehicle for viewers, without ROS: a URDF and the transforms of its frames."""
 
 from uvms_core.description.frames import StateFrames, description_message, static_message
 from uvms_core.description.tree import Branch, tree

@@ -28,7 +28,7 @@ def description_message(vehicle: Vehicle) -> Plain:
 
 
 def static_message(vehicle: Vehicle, stamp: int = 0) -> Plain:
-    """What never moves: map -> map_ned, and every fixed frame of the vehicle."""
+    """Static transforms: map -> map_ned, and every fixed frame of the vehicle."""
     fixed = [branch for branch in tree(vehicle) if branch.joint is None]
     world = Branch(topics.WORLD_FRAME, MAP_FRAME, (np.zeros(3), R_MAP_MAP_NED))
     return {"transforms": [_transform(stamp, branch) for branch in (world, *fixed)]}
@@ -50,7 +50,7 @@ def _pose(pose: Pose) -> Plain:
 
 
 class StateFrames:
-    """What moves: map_ned -> base_link_fsd, and the frame of each link in the one before."""
+    """Moving transforms: map_ned -> base_link_fsd, and each link's frame in the previous one."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         moving = [branch for branch in tree(vehicle) if branch.joint is not None]
@@ -61,8 +61,8 @@ class StateFrames:
     def message(self, odometry: Odometry, joints: JointStates) -> Plain:
         """tf2_msgs/TFMessage at the odometry's stamp.
 
-        A link's turn is quat(R_fixed) * (0, 0, sin(q/2), cos(q/2)), in scalars, because this runs
-        in every tick of the loop.
+        A link's rotation is quat(R_fixed) * (0, 0, sin(q/2), cos(q/2)), in scalars, because this
+        runs in every tick of the loop.
         """
         message = to_message(topics.TF, odometry)
         transforms = message["transforms"]

@@ -1,4 +1,4 @@
-"""What the bodies look like, of the shapes that URDF has: spheres and cylinders."""
+"""Shapes of the bodies, built from those that URDF has: spheres and cylinders."""
 
 import math
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ from uvms_core.vehicle.frames import Pose
 from uvms_core.vehicle.hull import Hull, Spheroid
 
 HULL_SPACING = 0.45
-"""Of the hull's spheres at most, in its radii; the dents stay below 0.45^2 / 8 of the radius."""
+"""Largest spacing of the hull's spheres in radii: dents stay below 0.45^2 / 8 of the radius."""
 THRUSTER_RADIUS_M = 0.05
 THRUSTER_LENGTH_M = 0.08
 
@@ -33,7 +33,7 @@ def hull_solids(hull: Hull) -> list[Solid]:
 
 
 def spheroid_solids(shape: Spheroid) -> list[Solid]:
-    """A spheroid as the spheres that touch it from inside, since URDF knows no ellipsoid.
+    """A spheroid as the spheres that touch it from inside, since URDF has no ellipsoid.
 
     The largest sphere in a prolate spheroid (half axes a, b, eccentricity e) around (c, 0, 0) has
     r = b sqrt(1 - (c / (a e))^2) for |c| <= a e^2; with c = a e^2 sin(t) that is

@@ -1,13 +1,13 @@
-"""The tree of the vehicle's frames, from which URDF and transforms are made alike.
+"""The tree of the vehicle's frames, from which both URDF and transforms are made.
 
 The frame of a link here is its joint's: origin on the joint's axis, z along it, turning with it, as
-URDF asks. The vehicle file's distal Denavit-Hartenberg frame i lies in it
+URDF requires. The vehicle file's distal Denavit-Hartenberg frame i lies in it
 at Tz(d) Tx(a) Rx(alpha), so that the chain is
 
     T_(i-1)_i = [Tz(d) Tx(a) Rx(alpha)]_(i-1) Rz(offset_i) Rz(q_i),
 
-with the arm's base in the place of the first bracket: standard DH, cut at the joints. A joint with
-an `origin` has that in the bracket's place, as in URDF.
+with the arm's base instead of the first bracket: standard DH, split at the joints. A joint with an
+`origin` has that instead of the bracket, as in URDF.
 """
 
 from collections import Counter
@@ -36,7 +36,7 @@ MAP_FRAME = "map"
 REP103_BODY_FRAME = "base_link"
 """REP-103: forward, port, up; origin as `base_link_fsd`."""
 HULL_FRAME = "hull"
-"""The hull's body; URDF's root had better have no mass."""
+"""The hull's body: the root of a URDF should have no mass."""
 TOOL_FRAME = "tool"
 
 R_MAP_MAP_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
@@ -46,7 +46,7 @@ R_FSD_FLU = np.diag([1.0, -1.0, -1.0])
 
 @dataclass(frozen=True)
 class Branch:
-    """A frame, its parent and its place there; `joint` then turns it about its own z."""
+    """A frame, its parent and its pose there; `joint` then rotates it about its own z."""
 
     frame: str
     parent: str
@@ -85,7 +85,7 @@ def thruster_frame(name: str) -> str:
 
 
 def basis(axis: Array, column: int) -> Array:
-    """A rotation (3, 3) with the unit vector `axis` in one column; its turn about it is free."""
+    """A rotation (3, 3) with the unit vector `axis` in one column; the others are arbitrary."""
     helper = np.eye(3)[np.argmin(np.abs(axis))]
     second = np.cross(axis, helper)
     second /= np.linalg.norm(second)

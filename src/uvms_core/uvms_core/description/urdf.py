@@ -49,9 +49,9 @@ def urdf_text(vehicle: Vehicle) -> str:
 
 
 def matrix_to_rpy(R: Array) -> tuple[float, float, float]:
-    """Roll, pitch, yaw of R = Rz(yaw) Ry(pitch) Rx(roll), exact at a pitch of 90 degrees, too.
+    """Roll, pitch, yaw of R = Rz(yaw) Ry(pitch) Rx(roll), also exact at a pitch of 90 degrees.
 
-    Roll is taken after the turn by -yaw, so that what one angle lacks in digits the other has.
+    Roll is taken after a rotation by -yaw, so that each makes up for the rounding of the other.
     """
     yaw = math.atan2(R[1, 0], R[0, 0])
     c, s = math.cos(yaw), math.sin(yaw)

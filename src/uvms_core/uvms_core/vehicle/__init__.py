@@ -1,4 +1,4 @@
-"""The vehicle file: schema, checks, shorthand words, loading and writing."""
+"""The vehicle file: schema, checks, keywords, loading and writing."""
 
 from uvms_core.vehicle.arm import Arm, DragCylinder, Joint, Link
 from uvms_core.vehicle.environment import Environment

@@ -1,24 +1,26 @@
-"""The arm: a serial chain of revolute joints, in Denavit-Hartenberg form or as URDF places them."""
+"""The arm: a serial chain of revolute joints, placed by Denavit-Hartenberg fields or as in URDF."""
 
 from typing import Annotated, Any
 
 from pydantic import Field, model_validator
 
+from uvms_core.errors import ConfigError
 from uvms_core.vehicle.parts import (
     AddedMass,
     Inertia,
     Part,
     UnitVector,
     Vector3,
+    or_keyword,
     unique_names,
-    word,
 )
+from uvms_core.vehicle.postures import STOWED, AnglesDeg, check_limits, joint_angles_deg
 
 
 class Mounting(Part):
-    """Pose of one frame in another."""
+    """Position and orientation of a frame in another one."""
 
-    position_m: Vector3 = Field(description="of the frame's origin, m")
+    position_m: Vector3 = Field(description="position of the frame's origin, m")
     rpy_deg: Vector3 = Field(default=(0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees")
 
 
@@ -26,36 +28,41 @@ DH_FIELDS = ("a_m", "alpha_deg", "d_m")
 
 
 class Joint(Part):
-    """A revolute joint about z: its place by DH fields or by an `origin`; limits and friction.
+    """A revolute joint about z: placement (DH fields or an `origin`), limits, drive and friction.
 
     DH: the link's frame is Rz(theta + offset) Tz(d) Tx(a) Rx(alpha) in the previous link's, so its
     origin is at the link's far end. With an `origin`, as in URDF: the link's frame is
     origin Rz(theta + offset) in the previous link's, so its origin is on the link's own joint.
     """
 
-    name: str = Field(min_length=1, description="name in joint_states and joint_command")
+    name: str = Field(min_length=1, description="name of the joint in messages, logs and overrides")
     a_m: float | None = Field(default=None, description="DH link length, m")
     alpha_deg: float | None = Field(default=None, description="DH twist, degrees")
     d_m: float | None = Field(default=None, description="DH offset along the joint axis, m")
     origin: Mounting | None = Field(
         default=None,
-        description="instead of the DH fields: the joint in the previous link's frame, angle zero",
+        description="instead of the DH fields: pose of the joint in the previous link's frame at"
+        " angle zero",
     )
-    offset_deg: float = Field(default=0.0, description="turn about z at joint angle zero, degrees")
+    offset_deg: float = Field(default=0.0, description="rotation about z at angle zero, degrees")
     lower_deg: float = Field(description="lower limit, degrees")
     upper_deg: float = Field(description="upper limit, degrees")
-    rate_limit_deg_s: float = Field(gt=0.0, description="greatest rate, degrees/s")
-    acceleration_limit_deg_s2: float = Field(gt=0.0, description="greatest acceleration, deg/s^2")
-    effort_limit_nm: float = Field(gt=0.0, description="greatest torque, N m")
-    rotor_inertia_kg_m2: float = Field(
-        gt=0.0, description="of motor and gear, reflected to the joint, kg m^2"
+    rate_limit_deg_s: float = Field(gt=0.0, description="largest joint rate, degrees/s")
+    acceleration_limit_deg_s2: float = Field(
+        gt=0.0, description="largest joint acceleration, degrees/s^2"
     )
-    viscous_friction_nm_s: float = Field(ge=0.0, description="N m per rad/s")
-    coulomb_friction_nm: float = Field(ge=0.0, description="sliding friction, N m")
+    effort_limit_nm: float = Field(gt=0.0, description="largest torque of the drive, N m")
+    rotor_inertia_kg_m2: float = Field(
+        gt=0.0, description="inertia of motor and gear, reflected to the joint, kg m^2"
+    )
+    viscous_friction_nm_s: float = Field(ge=0.0, description="viscous friction, N m per rad/s")
+    coulomb_friction_nm: float = Field(ge=0.0, description="sliding (Coulomb) friction, N m")
     coulomb_width_deg_s: float = Field(
         gt=0.0, description="rate w of the smooth sliding friction tanh(rate / w), degrees/s"
     )
-    stop_stiffness_nm_rad: float = Field(ge=0.0, description="of the end stops, N m per rad")
+    stop_stiffness_nm_rad: float = Field(
+        ge=0.0, description="stiffness of the end stops, N m per rad"
+    )
     stop_dissipation_s_rad: float = Field(
         ge=0.0, description="Hunt-Crossley dissipation of the end stops, s/rad"
     )
@@ -65,7 +72,7 @@ class Joint(Part):
         given = [name for name in DH_FIELDS if getattr(self, name) is not None]
         if self.origin is not None and given:
             raise ValueError(
-                f"is placed twice, by origin and by {', '.join(given)}; leave one of them away"
+                f"is placed twice, by origin and by {', '.join(given)}; remove one of them"
             )
         missing = [name for name in DH_FIELDS if name not in given]
         if self.origin is None and missing:
@@ -87,70 +94,78 @@ class Joint(Part):
 class DragCylinder(Part):
     """A circular cylinder cut into strips for cross-flow drag."""
 
-    center_m: Vector3 = Field(description="its middle, link frame, m")
-    axis: UnitVector = Field(description="its axis, link frame")
-    radius_m: float = Field(gt=0.0, description="m")
-    length_m: float = Field(gt=0.0, description="m")
+    center_m: Vector3 = Field(description="center of the cylinder, link frame, m")
+    axis: UnitVector = Field(description="direction of the axis, link frame")
+    radius_m: float = Field(gt=0.0, description="radius, m")
+    length_m: float = Field(gt=0.0, description="length, m")
     stations: int = Field(
-        default=3, ge=1, le=50, description="Gauss-Legendre stations along the axis"
+        default=3, ge=1, le=50, description="number of Gauss-Legendre points along the axis"
     )
 
 
-CYLINDER: Any = "cylinder"  # the word, of any field's type
+CYLINDER: Any = "cylinder"  # the keyword, for fields of any type
 
 
 class Cylinder(DragCylinder):
-    """The shape behind every field of a link that says `cylinder`."""
+    """The cylinder from which every field of a link with the value `cylinder` is computed."""
 
     axial_added_mass_fraction: float = Field(
-        default=0.1, ge=0.0, description="added mass along the axis as a part of the link's mass"
+        default=0.1,
+        ge=0.0,
+        description="added mass along the axis as a fraction of the link's mass",
     )
 
 
 class Link(Part):
-    """The body that joint i moves, in its frame i: the distal DH frame, or URDF's own.
+    """The body that joint i moves, in its frame i: the distal DH frame, or that of URDF.
 
-    What is not said follows from the section `cylinder`.
+    Fields that are not given follow from the section `cylinder`.
     """
 
     name: str = Field(min_length=1, description="name of the link")
     cylinder: Cylinder | None = Field(
-        default=None, description="shape behind every field that says `cylinder`"
+        default=None, description="shape that gives the fields with the value `cylinder`"
     )
     mass_kg: float = Field(gt=0.0, description="dry mass, kg")
-    volume_m3: Annotated[float, word("cylinder")] = Field(
+    volume_m3: Annotated[float, or_keyword("cylinder")] = Field(
         default=CYLINDER, gt=0.0, description="displaced volume, m^3, or `cylinder`"
     )
-    cg_m: Annotated[Vector3, word("cylinder")] = Field(
-        default=CYLINDER, description="m, or `cylinder`: its middle"
+    cg_m: Annotated[Vector3, or_keyword("cylinder")] = Field(
+        default=CYLINDER, description="center of gravity, m, or `cylinder`: its center"
     )
-    cb_m: Annotated[Vector3, word("cylinder")] = Field(
-        default=CYLINDER, description="m, or `cylinder`: its middle"
+    cb_m: Annotated[Vector3, or_keyword("cylinder")] = Field(
+        default=CYLINDER, description="center of buoyancy, m, or `cylinder`: its center"
     )
-    inertia_kg_m2: Annotated[Inertia, word("cylinder")] = Field(
+    inertia_kg_m2: Annotated[Inertia, or_keyword("cylinder")] = Field(
         default=CYLINDER,
-        description="about the CG, link axes, kg m^2: 3 diagonal values, 3 rows or `cylinder`",
+        description="inertia about the center of gravity, link axes, kg m^2: 3 diagonal values, 3"
+        " rows or `cylinder`",
     )
-    added_mass: Annotated[AddedMass, word("cylinder")] = Field(
+    added_mass: Annotated[AddedMass, or_keyword("cylinder")] = Field(
         default=CYLINDER,
-        description="about the link frame's origin, SI: 6 diagonal values, 6 rows or `cylinder`",
+        description="added mass about the link frame's origin, SI units: 6 diagonal values, 6 rows"
+        " or `cylinder`",
     )
-    drag: Annotated[tuple[DragCylinder, ...], word("cylinder")] = Field(
-        default=CYLINDER, description="cylinders that feel cross-flow drag, or `cylinder`"
+    drag: Annotated[tuple[DragCylinder, ...], or_keyword("cylinder")] = Field(
+        default=CYLINDER, description="cylinders with cross-flow drag, or `cylinder`"
     )
 
 
 class DragCoefficient(Part):
-    """Cross-flow drag coefficient, linear in the logarithm of the Reynolds number."""
+    """Drag coefficient by the Reynolds number, linear in its logarithm."""
 
-    reynolds: tuple[float, ...] = Field(min_length=2, description="increasing, > 0")
-    cd: tuple[float, ...] = Field(min_length=2, description="coefficient at each, >= 0")
+    reynolds: tuple[float, ...] = Field(
+        min_length=2, description="Reynolds numbers, increasing, > 0"
+    )
+    cd: tuple[float, ...] = Field(
+        min_length=2, description="coefficient at each Reynolds number, >= 0"
+    )
 
     @model_validator(mode="after")
     def _is_table(self) -> "DragCoefficient":
         if len(self.reynolds) != len(self.cd):
             raise ValueError(
-                f"reynolds has {len(self.reynolds)} values, cd has {len(self.cd)}; must be as many"
+                f"reynolds has {len(self.reynolds)} values, cd has {len(self.cd)}; give one cd each"
             )
         pairs = zip(self.reynolds, self.reynolds[1:], strict=False)
         if self.reynolds[0] <= 0.0 or not all(low < high for low, high in pairs):
@@ -168,7 +183,7 @@ SMOOTH_PLATE = DragCoefficient(
 )
 """Skin friction of a smooth flat plate by the Reynolds number of its length: Blasius's 1.328 /
 sqrt(Re) up to 5e5, where transition begins, then the ITTC 1957 line less Prandtl's 1700 / Re
-(Schlichting, Boundary-Layer Theory, ch. 7 and 21). A slender cylinder along the flow has a little
+(Schlichting, Boundary-Layer Theory, ch. 7 and 21). A slender cylinder along the flow has slightly
 more.
 """
 
@@ -176,18 +191,26 @@ more.
 class Arm(Part):
     """Arm: mounting, joints, the link that each joint moves, and the tool on the last link."""
 
-    base: Mounting = Field(description="frame of joint 1 in the body frame")
-    joints: tuple[Joint, ...] = Field(min_length=1, description="from the base to the tool")
-    links: tuple[Link, ...] = Field(min_length=1, description="link i is moved by joint i")
-    tool: Mounting = Field(description="tool in the last link's frame")
-    stowed_deg: tuple[float, ...] = Field(description="joint angles with the arm stowed, degrees")
+    base: Mounting = Field(description="pose of the frame of joint 1 in the body frame")
+    joints: tuple[Joint, ...] = Field(min_length=1, description="joints, from the base to the tool")
+    links: tuple[Link, ...] = Field(min_length=1, description="links; joint i moves link i")
+    tool: Mounting = Field(description="pose of the tool in the last link's frame")
+    stowed_deg: tuple[float, ...] = Field(
+        description="joint angles of the posture `stowed`, in which the vehicle is trimmed, degrees"
+    )
+    postures_deg: dict[str, AnglesDeg] = Field(
+        default_factory=dict,
+        description="further postures by name, such as `home`: one angle a joint, or angles by"
+        " joint name (other joints as in `stowed`), degrees",
+    )
     drag_coefficient: DragCoefficient = Field(
-        description="across the axes of all drag cylinders, by the diameter's Reynolds number"
+        description="drag coefficient across the axes of all drag cylinders, by the Reynolds number"
+        " of the diameter"
     )
     friction_coefficient: DragCoefficient = Field(
         default=SMOOTH_PLATE,
-        description="along the axes, by the length's Reynolds number and on the side's surface; "
-        "a smooth plate by default",
+        description="friction coefficient along the axes, on the lateral surface, by the Reynolds"
+        " number of the length; that of a smooth plate by default",
     )
 
     @model_validator(mode="after")
@@ -198,10 +221,17 @@ class Arm(Part):
                 raise ValueError(f"{name} has {len(values)} entries for {count} joints")
         unique_names(self.joints, "joint")
         unique_names(self.links, "link")
-        for joint, angle in zip(self.joints, self.stowed_deg, strict=True):
-            if not joint.lower_deg <= angle <= joint.upper_deg:
-                raise ValueError(
-                    f"stowed_deg {angle:g} of joint {joint.name} is outside its limits"
-                    f" {joint.lower_deg:g} to {joint.upper_deg:g}"
-                )
+        return self
+
+    @model_validator(mode="after")
+    def _postures_are_possible(self) -> "Arm":
+        if STOWED in self.postures_deg:
+            raise ValueError(f"postures_deg.{STOWED}: give that posture as stowed_deg")
+        postures: dict[str, AnglesDeg] = {"stowed_deg": self.stowed_deg}
+        postures |= {f"postures_deg.{name}": each for name, each in self.postures_deg.items()}
+        for name, angles in postures.items():
+            try:
+                check_limits(self.joints, joint_angles_deg(self, angles))
+            except ConfigError as fault:
+                raise ValueError(f"{name}: {fault}") from fault
         return self

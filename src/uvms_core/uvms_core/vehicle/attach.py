@@ -1,4 +1,4 @@
-"""Hull and attachments as one rigid body, so that nothing after the loader need know of them."""
+"""Hull and attachments as one rigid body: after loading, nothing else has to handle them."""
 
 import numpy as np
 
@@ -7,7 +7,7 @@ from uvms_core.vehicle.hull import Hull
 
 
 def with_attachments(hull: Hull, environment: Environment) -> Hull:
-    """The hull with its attachments counted in mass, volume, centres and inertia, and none left.
+    """The hull with its attachments counted in mass, volume, centers and inertia, and then removed.
 
     An attachment of mass m and wet weight W displaces V = (m - W / g) / rho and is a point: it adds
     m and m d^2 to the inertia, and no added mass. One without a mass of its own changes weight,

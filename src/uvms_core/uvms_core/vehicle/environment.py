@@ -1,4 +1,4 @@
-"""Water, gravity, and where on the Earth the world frame lies."""
+"""Water, gravity, and the place of the world frame on the Earth."""
 
 from pydantic import Field
 
@@ -10,11 +10,14 @@ class Environment(Part):
 
     water_density_kg_m3: float = Field(gt=0.0, description="density of the water, kg/m^3")
     kinematic_viscosity_m2_s: float = Field(
-        gt=0.0, description="of the water, m^2/s; gives the Reynolds number of the arm's strips"
+        gt=0.0,
+        description="kinematic viscosity of the water, m^2/s; sets the arm's Reynolds numbers",
     )
     gravity_m_s2: float = Field(gt=0.0, description="acceleration of gravity, m/s^2")
-    atmospheric_pressure_pa: float = Field(ge=0.0, description="pressure at the surface, Pa")
-    datum_latitude_deg: float = Field(ge=-89.0, le=89.0, description="of map_ned's origin, degrees")
+    atmospheric_pressure_pa: float = Field(ge=0.0, description="air pressure at the surface, Pa")
+    datum_latitude_deg: float = Field(
+        ge=-89.0, le=89.0, description="latitude of the origin of map_ned, degrees"
+    )
     datum_longitude_deg: float = Field(
-        ge=-180.0, le=180.0, description="of map_ned's origin, degrees"
+        ge=-180.0, le=180.0, description="longitude of the origin of map_ned, degrees"
     )

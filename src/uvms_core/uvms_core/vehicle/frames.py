@@ -66,6 +66,16 @@ def joint_frames(arm: Arm, q: Array) -> list[Pose]:
     return [compose(f, placement_pose(j)) for f, j in zip(before, arm.joints, strict=True)]
 
 
+def arm_length(arm: Arm) -> float:
+    """Distances from joint to joint and on to the tool, m: the tool is never farther from joint 1.
+
+    What a task for the arm is scaled by.
+    """
+    tool = compose(distal_pose(arm.joints[-1]), mounting_pose(arm.tool))
+    pieces = [*joint_placements(arm)[1:], tool]
+    return float(sum(np.linalg.norm(position) for position, _ in pieces))
+
+
 def joint_placements(arm: Arm) -> list[Pose]:
     """Each joint's frame at angle and offset zero in the frame of the joint before it."""
     parents = [mounting_pose(arm.base), *(distal_pose(joint) for joint in arm.joints[:-1])]

@@ -1,18 +1,16 @@
-"""Read, override, check, expand and write vehicle files."""
+"""Read, override, check, complete and write vehicle files."""
 
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-import yaml
-
 from uvms_core.config import validated
 from uvms_core.errors import VehicleFileError
-from uvms_core.vehicle.expand import MissingShapeError, expand
+from uvms_core.vehicle.derived import MissingShapeError, with_derived_values
 from uvms_core.vehicle.locate import REFERENCE, vehicle_path
 from uvms_core.vehicle.overrides import override
 from uvms_core.vehicle.vehicle import Vehicle
-from uvms_core.yaml_text import parse_yaml, read_yaml
+from uvms_core.yaml_text import dump_yaml, parse_yaml, read_yaml
 
 _LONGEST_VALUE = 40  # characters of an override that an error repeats
 
@@ -22,8 +20,8 @@ def load_vehicle(
 ) -> Vehicle:
     """Vehicle of a YAML file, or by name (None: the reference vehicle), with dotted overrides.
 
-    Overrides are put in before the words `neutral`, `trim`, `spheroid` and `cylinder` are worked
-    out, so that derived values follow them. Raises VehicleFileError with one line per fault.
+    Overrides are applied before the keywords `neutral`, `trim`, `spheroid` and `cylinder` are
+    evaluated, so that derived values follow them. Raises VehicleFileError with a line per fault.
     """
     path = vehicle_path(REFERENCE if path is None else path)
     return vehicle_from_data(read_yaml(path, str(path), VehicleFileError), str(path), overrides)
@@ -39,16 +37,14 @@ def vehicle_from_data(
         what = _with(what, overrides)
         parsed = validated(Vehicle, changed, what, VehicleFileError)
     try:
-        return validated(Vehicle, expand(parsed), what, VehicleFileError)
+        return validated(Vehicle, with_derived_values(parsed), what, VehicleFileError)
     except MissingShapeError as fault:
         raise VehicleFileError(f"{what}: {fault}") from fault
 
 
 def dump_vehicle(vehicle: Vehicle) -> str:
-    """The effective vehicle as YAML, every word worked out; loading it gives an equal vehicle."""
-    return yaml.safe_dump(
-        vehicle.model_dump(mode="json"), sort_keys=False, default_flow_style=None, width=100
-    )
+    """The effective vehicle as YAML, without keywords; loading it gives an equal vehicle."""
+    return dump_yaml(vehicle.model_dump(mode="json"), default_flow_style=None, width=100)
 
 
 def vehicle_from_yaml(text: str, what: str = "vehicle") -> Vehicle:
@@ -57,9 +53,9 @@ def vehicle_from_yaml(text: str, what: str = "vehicle") -> Vehicle:
 
 
 def _with(what: str, overrides: Mapping[str, Any]) -> str:
-    """The file's name with the overrides, one of which is to blame for what comes after."""
-    told = ", ".join(f"{path}={_short(value)}" for path, value in overrides.items())
-    return f"{what} with {told}"
+    """The file's name with the overrides: one of them causes the error that follows."""
+    changes = ", ".join(f"{path}={_short(value)}" for path, value in overrides.items())
+    return f"{what} with {changes}"
 
 
 def _short(value: Any) -> str:

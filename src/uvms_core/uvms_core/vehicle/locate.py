@@ -1,4 +1,4 @@
-"""Where vehicle files are: those that come with this package, by name, or a file of one's own."""
+"""Finds vehicle files: those of this package by name, others by path."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def reference_file() -> Path:
 
 
 def vehicle_path(name: str | Path, folder: Path | None = None) -> Path:
-    """The file of a vehicle that comes with the project, or the YAML file that `name` is.
+    """The file of a vehicle of this project by its name, or the YAML file at the path `name`.
 
     A relative path starts at `folder` (None: the working directory).
 

@@ -33,7 +33,7 @@ def _replaced(node: Any, parts: list[str], value: Any, path: str, done: str) -> 
 
 
 def _keys(node: Any) -> dict[str, Any]:
-    """What may follow in a path, as text, and the key that it stands for."""
+    """What may follow in a path, as text, with the key that it stands for."""
     if isinstance(node, Mapping):
         return {str(key): key for key in node}
     if not isinstance(node, list | tuple):

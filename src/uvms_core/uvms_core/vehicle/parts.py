@@ -1,4 +1,4 @@
-"""Base class and vector types of the vehicle file, with the checks that physics asks of them."""
+"""Base class and vector types of the vehicle file, with their physical checks."""
 
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any
@@ -19,20 +19,16 @@ class Part(Config):
     """Base of every section of the vehicle file."""
 
 
-def word(*words: str) -> WrapValidator:
-    """Let a field hold one of these words in the file; the loader puts the value in its place."""
+def or_keyword(*words: str) -> WrapValidator:
+    """Let a field hold one of these keywords in the file; the loader replaces it by a value."""
 
     def validate(value: Any, handler: Callable[[Any], Any]) -> Any:
         if not isinstance(value, str):
             return handler(value)
-        if value in words:
-            return value
-        try:  # YAML reads 1e-3 as text
-            float(value)
-        except ValueError:
+        if value not in words:
             allowed = " or ".join(repr(each) for each in words)
-            raise ValueError(f"must be a value or the word {allowed}") from None
-        return handler(value)
+            raise ValueError(f"must be a value or the word {allowed}")
+        return value
 
     return WrapValidator(validate)
 

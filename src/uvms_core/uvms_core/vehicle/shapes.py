@@ -1,4 +1,4 @@
-"""Closed forms behind the words `spheroid` and `cylinder` of the vehicle file."""
+"""Closed forms for the keywords `spheroid` and `cylinder` of the vehicle file."""
 
 import math
 

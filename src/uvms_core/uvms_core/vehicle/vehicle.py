@@ -14,17 +14,19 @@ from uvms_core.vehicle.thrusters import Thruster
 class Vehicle(Part):
     """Vehicle, arm, actuators, sensors and the water around them; mirrors the YAML file.
 
-    Made by `load_vehicle`, which puts values in the place of the file's shorthand words.
+    Made by `load_vehicle`, which replaces the file's keywords by values.
     """
 
-    name: str = Field(min_length=1, description="name of the vehicle; its ROS namespace")
-    environment: Environment = Field(description="water, gravity, datum")
+    name: str = Field(min_length=1, description="name of the vehicle")
+    environment: Environment = Field(description="water, gravity and geographic datum")
     hull: Hull = Field(description="the vehicle without its arm")
-    thrusters: tuple[Thruster, ...] = Field(min_length=1, description="any number of them")
-    arm: Arm = Field(description="serial chain of revolute joints")
+    thrusters: tuple[Thruster, ...] = Field(min_length=1, description="thrusters, any number")
+    arm: Arm = Field(description="arm, a serial chain of revolute joints")
     sensors: Sensors = Field(description="rates, lever arms, noise")
     tether: Tether | None = Field(
-        default=None, description="how the trim changes with depth; none: it does not"
+        default=None,
+        description="pull of a tether by depth, which the plant adds and no controller knows of;"
+        " none: no tether",
     )
 
     @field_validator("thrusters")

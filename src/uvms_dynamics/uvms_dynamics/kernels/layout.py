@@ -72,10 +72,18 @@ HULL_ONLY = {
 DAMPING, QUADRATIC, COS_TURN, SIN_TURN, *_rest = _columns(HULL_ONLY, _BODY_END)
 JOINTS, CYLINDERS, GROUPS, STRIPS, CROSS_FLOW, AXIAL = _rest
 
-# Fixtures, in row n + 1: the tool in the last link's frame, and the added mass of the hull alone,
-# about the body origin in body axes
-FIXTURES = {"TOOL_ROTATION": 9, "TOOL_POSITION": 3, "ADDED_MASS": 21}
-TOOL_ROTATION, TOOL_POSITION, ADDED_MASS = _columns(FIXTURES)
+# Fixtures, in row n + 1
+FIXTURES = {
+    "TOOL_ROTATION": 9,  # in the last link's frame
+    "TOOL_POSITION": 3,
+    "ADDED_MASS": 21,  # of the hull alone, about the body origin, body axes
+    "TETHER_DEPTH": 1,  # reference depth; only the simulation reads the tether's
+    "TETHER_REACH": 1,  # greatest distance from it that counts
+    "TETHER_WEIGHT": 1,  # per metre of depth
+    "TETHER_MOMENT": 3,  # per metre of depth
+}
+TOOL_ROTATION, TOOL_POSITION, ADDED_MASS, *_tether = _columns(FIXTURES)
+TETHER_DEPTH, TETHER_REACH, TETHER_WEIGHT, TETHER_MOMENT = _tether
 
 # Drag cylinders, in groups of eight: each of these numbers of all eight, then the next
 CYLINDER = {

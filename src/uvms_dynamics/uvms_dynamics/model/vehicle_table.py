@@ -139,10 +139,15 @@ def _set_joint(row: Array, joint: Joint, mount: _Mount, turn: float) -> None:
 
 
 def _set_fixtures(row: Array, vehicle: Vehicle, tool: Pose) -> None:
-    """The tool in the last link's frame, and the hull's own added mass."""
+    """The tool in the last link's frame, the hull's own added mass, and the tether."""
     _put(row, layout.TOOL_ROTATION, tool[1].ravel())
     _put(row, layout.TOOL_POSITION, tool[0])
     _put(row, layout.ADDED_MASS, _packed(np.array(vehicle.hull.added_mass)))
+    if (tether := vehicle.tether) is not None:
+        _put(row, layout.TETHER_DEPTH, [tether.reference_depth_m])
+        _put(row, layout.TETHER_REACH, [tether.linear_within_m])
+        _put(row, layout.TETHER_WEIGHT, [tether.weight_per_m_n])
+        _put(row, layout.TETHER_MOMENT, tether.moment_per_m_nm)
 
 
 def _put(row: Array, column: Any, values: Any) -> None:

@@ -1,4 +1,4 @@
-"""The body whose added mass is asked for: a shape, a mesh file or a part of a vehicle file."""
+"""The body whose added mass is computed: a shape, a mesh file or a part of a vehicle file."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -16,24 +16,24 @@ from uvms_dynamics.panel_method.solids import Cylinder, Ellipsoid, Solid, parse_
 from uvms_dynamics.panel_method.theory import in_frame
 
 PANELS = 3000
-"""Panels of the finest surface, unless told otherwise: seconds, and a few parts in a thousand."""
+"""Default number of panels of the finest surface: takes seconds, accurate to some 0.1 %."""
 
 MOST_HALVED = 8000
-"""A mesh file's panels are halved on for an estimate of the error up to this number."""
+"""Panels up to which a mesh is refined once more for an error estimate."""
 
 SEA_WATER = 1025.0
-"""Density where nothing else is said, kg/m^3."""
+"""Default density, kg/m^3."""
 
 FILE_ROW = "vehicle file now"
-"""Row of what a vehicle's file has for the part."""
+"""Row with the vehicle file's current values."""
 
 
 @dataclass(frozen=True)
 class Body:
-    """Finenesses of one surface in the body frame, coarse to fine, and what is known beside.
+    """One surface in the body frame at several resolutions, coarse to fine, with known values.
 
-    `rows` holds matrices (6, 6) to compare with, by name; nan on the diagonal is what is not
-    known. `is_mesh`: the panels are a user's.
+    `rows` holds matrices (6, 6) to compare with, by name; nan on the diagonal marks unknown
+    terms. `is_mesh`: the panels come from a user's file.
     """
 
     name: str
@@ -63,7 +63,7 @@ def solid_body(name: str, solid: Solid, pose: Pose, density: float, count: int =
 
 
 def _known(matrix: Array, solid: Solid, pose: Pose) -> Array:
-    """The matrix (6, 6) with nan on the diagonal where mass along an open axis would show."""
+    """The matrix (6, 6) with nan on the diagonal where motion along an open axis contributes."""
     if solid.open_axis:
         along = np.diag(in_frame(np.diag([1.0, 0.0, 0.0, 0.0, 0.0, 0.0]), *pose))
         matrix = matrix + np.diag(np.where(along > 1e-12, np.nan, 0.0))
@@ -83,7 +83,7 @@ def mesh_body(
     scale: float | None = None,
     flip: bool = False,
 ) -> Body:
-    """Body of a mesh file; its panels are halved, which leaves the surface as it is."""
+    """Body of a mesh file; its panels are halved, which keeps the surface."""
     _check_count(count)
     panels = with_short_edges(load_panels(path, scale, flip), count // 4).in_frame(*pose)
     halved = 4 * panels.count <= max(count, MOST_HALVED)
@@ -92,7 +92,7 @@ def mesh_body(
 
 
 def vehicle_body(vehicle: Vehicle, name: str, count: int = PANELS) -> Body:
-    """Hull or link of a vehicle that has a shape there, about its own frame's origin."""
+    """Hull or link of a vehicle with a shape, about the origin of its own frame."""
     density = vehicle.environment.water_density_kg_m3
     parts = {link.name: link for link in vehicle.arm.links if link.cylinder is not None}
     if name == "hull" and (shape := vehicle.hull.spheroid) is not None:
@@ -105,7 +105,7 @@ def vehicle_body(vehicle: Vehicle, name: str, count: int = PANELS) -> Body:
         added_mass = parts[name].added_mass
     else:
         known = [*(["hull"] if vehicle.hull.spheroid is not None else []), *parts]
-        choices = ", ".join(known) or "none at all"
+        choices = ", ".join(known) or "none"
         raise PanelMethodError(
             f"{name!r}: the vehicle {vehicle.name} has no such part with a shape (hull.spheroid, or"
             f" the cylinder of a link); it has {choices}"
@@ -117,7 +117,7 @@ def vehicle_body(vehicle: Vehicle, name: str, count: int = PANELS) -> Body:
 def _link_solid(link: Link) -> tuple[Solid, Pose]:
     """The link's cylinder and the pose of its own frame (axis along x) in the link's."""
     shape = link.cylinder
-    assert shape is not None  # chosen so
+    assert shape is not None  # only such links are passed
     axis = np.array(shape.axis)
     beside = np.eye(3)[np.abs(axis).argmin()]
     second = np.cross(axis, beside) / np.linalg.norm(np.cross(axis, beside))
@@ -127,4 +127,4 @@ def _link_solid(link: Link) -> tuple[Solid, Pose]:
 
 def _check_count(count: int) -> None:
     if count < 200:
-        raise PanelMethodError(f"{count} panels are too few for any answer; at least 200")
+        raise PanelMethodError(f"{count} panels are too few; at least 200")

@@ -1,4 +1,4 @@
-"""What a surface must be before the panel method can make sense of it."""
+"""Requirements on a surface for the panel method."""
 
 from dataclasses import replace
 from itertools import permutations
@@ -12,17 +12,17 @@ from uvms_dynamics.panel_method.errors import PanelMethodError
 from uvms_dynamics.panel_method.panels import Numbers, Panels
 
 SMALLEST_M, LARGEST_M = 0.01, 30.0
-"""Extents of a body that look like metres."""
+"""Plausible range of a body's length."""
 
 MOST_POINTS = 200
-"""Corners of a surface that are looked for within each other surface."""
+"""Corners of a surface that are tested against each other surface."""
 
 SLIVER = 1e-10
-"""A panel below this part of the whole area has no reliable normal."""
+"""Share of the total area below which a panel has no reliable normal."""
 
 
 def check_closed(panels: Panels, what: str) -> None:
-    """Raise PanelMethodError unless each edge joins two panels that run along it oppositely."""
+    """Raise PanelMethodError unless each edge joins two panels of opposite direction there."""
     start, end = _edges(panels)
     n = len(panels.vertices)
     forth, back = start * n + end, end * n + start
@@ -35,7 +35,7 @@ def check_closed(panels: Panels, what: str) -> None:
         )
     if (twice := len(forth) - len(np.unique(forth))) > 0:
         raise PanelMethodError(
-            f"{what}: neighbouring panels point to different sides at {twice} edges:"
+            f"{what}: neighbouring panels have opposite orientation at {twice} edges:"
             " make the normals consistent with a mesh tool, outwards"
         )
 
@@ -47,12 +47,12 @@ def check_outward(panels: Panels, what: str) -> int:
     if (volumes < 0.0).all():
         raise PanelMethodError(
             f"{what}: the normals point inwards (enclosed volume {panels.volume():.4g} m^3):"
-            " turn them round with --flip"
+            " reverse them with --flip"
         )
     if (volumes <= 0.0).any():
         raise PanelMethodError(
             f"{what}: {len(volumes)} separate surfaces, one of which encloses"
-            f" {volumes.min():.4g} m^3: an inner wall or a surface inside out. Leave only what"
+            f" {volumes.min():.4g} m^3: an inner wall or a surface inside out. Keep only what"
             " touches the water outside"
         )
     _check_apart(panels, label, what)
@@ -78,7 +78,7 @@ def _check_apart(panels: Panels, label: Numbers, what: str) -> None:
             x, y, z = points[inside.argmax()]
             raise PanelMethodError(
                 f"{what}: {len(surfaces)} separate surfaces, two of which overlap or lie within"
-                f" each other (at {x:.4g}, {y:.4g}, {z:.4g}). Unite them and leave only what"
+                f" each other (at {x:.4g}, {y:.4g}, {z:.4g}). Unite them and keep only what"
                 " touches the water outside"
             )
 
@@ -102,13 +102,13 @@ def winding_number(panels: Panels, points: Array) -> Array:
 
 
 def check_metres(panels: Panels, what: str) -> None:
-    """Raise PanelMethodError if the size of a file without units is no size in metres."""
+    """Raise PanelMethodError if the size of a file without units is implausible in metres."""
     if not SMALLEST_M <= panels.size <= LARGEST_M:
         raise PanelMethodError(
             f"{what}: it is {panels.size:.4g} m long and {panels.volume():.4g} m^3 large if its"
             f" numbers are metres; expected is a length of {SMALLEST_M:g} to {LARGEST_M:g} m."
-            " Say what they are: --scale 0.001 for millimetres, --scale 0.0254 for inches,"
-            " --scale 1 for metres indeed"
+            " Give the unit: --scale 0.001 for millimetres, --scale 0.0254 for inches,"
+            " --scale 1 if they are metres"
         )
 
 
@@ -119,7 +119,7 @@ def without_slivers(panels: Panels) -> Panels:
 
 
 def _edges(panels: Panels) -> tuple[Array, Array]:
-    """Start and end of every edge of every panel, in the panel's own sense."""
+    """Start and end of every edge of every panel, in the panel's own direction."""
     start, end = panels.faces.ravel(), np.roll(panels.faces, -1, axis=1).ravel()
     real = start != end
     return start[real].astype(np.int64), end[real].astype(np.int64)

@@ -4,4 +4,4 @@ from uvms_core.errors import UvmsError
 
 
 class PanelMethodError(UvmsError):
-    """A body cannot be given to the panel method, or the method has no answer for it."""
+    """A body does not suit the panel method, or the method finds no solution for it."""

@@ -1,4 +1,4 @@
-"""Added mass with its discretisation error, from two finenesses of the same surface."""
+"""Added mass with its discretisation error, from two resolutions of the same surface."""
 
 from dataclasses import dataclass
 
@@ -10,21 +10,21 @@ from uvms_dynamics.panel_method.panels import Panels
 from uvms_dynamics.panel_method.solver import Progress, solve
 
 NEGATIVE = 1e-3
-"""A more negative eigenvalue, as a part of the largest, is no discretisation error."""
+"""Negative eigenvalue, relative to the largest, beyond which the result is refused."""
 
-NOTHING = 1e-3
-"""A change of terms below this part of the displaced water's inertia is of no interest."""
+NEGLIGIBLE = 1e-3
+"""Terms below this part of the displaced water's inertia count as unchanged."""
 
 
 @dataclass(frozen=True)
 class AddedMassEstimate:
     """Added mass (6, 6), order X Y Z K M N, SI, symmetric and positive semidefinite.
 
-    `solved` holds (panels, matrix) of each fineness as computed; `change` (6,) is what the last
-    step, to the extrapolated value, changes each diagonal term by, relative (None: one fineness
-    only; 0 for terms that are next to nothing). `asymmetry` is the largest |A - A^T| of the
-    finest, and `clipped` the most negative eigenvalue that was set to zero, both as parts of the
-    largest entry with lengths in units of the cube root of the volume.
+    `solved` holds (panels, matrix) of each resolution as computed; `change` (6,) is the relative
+    change of each diagonal term by the extrapolation (None with a single resolution; 0 for
+    negligible terms). `asymmetry` is the largest |A - A^T| of the finest, and `clipped` the most
+    negative eigenvalue that was set to zero, both relative to the largest entry with lengths in
+    units of the cube root of the volume.
     """
 
     matrix: Array
@@ -42,7 +42,7 @@ def estimate(
 
     The error falls with the panels' size squared where the surface is smooth, so that
     A = (4 A_fine - A_coarse) / 3 (Richardson). Edges converge more slowly; then `change` is
-    nearer to the error itself. The volume is extrapolated alike.
+    nearer to the error itself. The volume is extrapolated in the same way.
     """
     if not (np.isfinite(density) and density > 0.0):
         raise PanelMethodError(f"density {density:g}: must be a density in kg/m^3, > 0")
@@ -72,7 +72,7 @@ def _units(volume: float) -> Array:
 
 
 def _semidefinite(matrix: Array, units: Array) -> tuple[Array, float]:
-    """The nearest positive semidefinite matrix, and the eigenvalue that was taken away."""
+    """The nearest positive semidefinite matrix, and the eigenvalue that was removed."""
     values, vectors = np.linalg.eigh(matrix / np.outer(units, units))
     if values[0] >= 0.0:
         return matrix, 0.0
@@ -81,12 +81,12 @@ def _semidefinite(matrix: Array, units: Array) -> tuple[Array, float]:
             f"the added mass has a negative eigenvalue, {values[0] / values[-1]:.2g} of the"
             " largest: the panels are too coarse for this body, overlap, or point inwards"
         )
-    mended = (vectors * np.maximum(values, 0.0)) @ vectors.T
-    mended = (mended + mended.T) / 2.0
-    return mended * np.outer(units, units), float(-values[0] / values[-1])
+    repaired = (vectors * np.maximum(values, 0.0)) @ vectors.T
+    repaired = (repaired + repaired.T) / 2.0
+    return repaired * np.outer(units, units), float(-values[0] / values[-1])
 
 
 def _change(matrix: Array, finest: Array, scale: Array) -> Array:
     value, before = np.diag(matrix), np.diag(finest)
-    present = value > NOTHING * scale
+    present = value > NEGLIGIBLE * scale
     return np.where(present, np.abs(value - before) / np.where(present, value, 1.0), 0.0)

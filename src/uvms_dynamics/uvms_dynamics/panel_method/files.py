@@ -12,15 +12,15 @@ from uvms_dynamics.panel_method.optional import optional
 from uvms_dynamics.panel_method.panels import Panels, from_corners
 
 FORMATS = (".stl", ".obj", ".ply", ".off", ".glb", ".gltf")
-"""Read by trimesh; any other format is left to capytaine."""
+"""Read by trimesh; capytaine reads the others."""
 
 
 def load_panels(path: str | Path, scale: float | None = None, flip: bool = False) -> Panels:
     """Closed surface of a mesh file in its own frame, m.
 
-    `scale` is the file's unit in metres (None: metres, and the size must look like it); `flip`
-    turns the normals round. Raises PanelMethodError for what is no closed surface with outward
-    normals.
+    `scale` is the file's unit in metres (None: metres, and the size must be plausible); `flip`
+    reverses the normals. Raises PanelMethodError unless the surface is closed and its normals point
+    outwards.
     """
     path = Path(path)
     if scale is not None and not (np.isfinite(scale) and scale > 0.0):
@@ -50,11 +50,11 @@ def _read(path: Path) -> Array:
         return _read_by_capytaine(path)
     except PanelMethodError:
         raise
-    except Exception as fault:  # readers raise whatever comes to them from a broken file
+    except Exception as fault:  # readers raise errors of many kinds on a broken file
         choices = ", ".join(FORMATS)
         raise PanelMethodError(
-            f"{path}: cannot be read as a mesh ({fault}); known are {choices} and what capytaine"
-            " reads (.gdf, .mar, .pnl, .hst; with meshio installed .msh, .vtk and more)"
+            f"{path}: cannot be read as a mesh ({fault}); known formats are {choices} and"
+            " those of capytaine (.gdf, .mar, .pnl, .hst; with meshio .msh, .vtk and more)"
         ) from fault
 
 
@@ -67,9 +67,9 @@ def _read_by_capytaine(path: Path) -> Array:
 
 
 def _joined(corners: Array) -> Array:
-    """Corners on a grid of 1e-7 of the size, without triangles that vanish on it.
+    """Corners on a grid of 1e-7 of the size, without triangles that collapse on it.
 
-    STL has no common corners and single precision; what is one point must be one number.
+    STL has no shared corners and single precision; equal points must become identical.
     """
     size = float(np.ptp(corners.reshape(-1, 3), axis=0).max())
     step = 1e-7 * size if size > 0.0 else 1.0

@@ -11,12 +11,12 @@ Numbers = NDArray[np.int64]
 """Vertex numbers."""
 
 LONG = 3.0
-"""An edge is long from this multiple of that of as many equilateral triangles."""
+"""An edge counts as long from this multiple of the mean edge (see `mean_edge`)."""
 
 
 @dataclass(frozen=True)
 class Panels:
-    """Flat triangles and quadrilaterals, counter-clockwise seen from the water.
+    """Flat triangles and quadrilaterals, counter-clockwise as seen from the water.
 
     vertices (v, 3) m; faces (k, 4) of vertex numbers, where a triangle repeats its last one.
     """
@@ -61,11 +61,11 @@ class Panels:
         return origin + volumes @ corners.sum(axis=1) / (4.0 * volumes.sum())
 
     def in_frame(self, position: Array, rotation: Array) -> "Panels":
-        """The same body in the frame where its own has the pose (position (3,), R (3, 3))."""
+        """The same body in a frame in which its own has the pose (position (3,), R (3, 3))."""
         return replace(self, vertices=self.vertices @ rotation.T + position)
 
     def flipped(self) -> "Panels":
-        """The same panels with their normals turned round."""
+        """The same panels with their normals reversed."""
         return replace(self, faces=self.faces[:, [1, 0, 3, 2]])
 
     def refined(self) -> "Panels":
@@ -101,9 +101,9 @@ def _triangle_quarters(faces: Numbers, middle: Numbers) -> Numbers:
 def with_short_edges(panels: Panels, count: int) -> Panels:
     """At least `count` triangles, by halving the longest edges; the surface stays the same.
 
-    Long thin triangles, as CAD programs write them, spoil the solution whatever their number:
-    where the panels have some, half as many again as there were may be spent on them. A cut edge
-    may meet an uncut one, which collocation at the panels' middles does not mind.
+    Long thin triangles, as CAD programs write them, spoil the solution in any number: up to half as
+    many panels again are spent on cutting them. A cut edge may meet an uncut one, which does no
+    harm to collocation at the centres of the panels.
     """
     corners = panels.triangles()
     enough = max(count, 1.5 * len(corners))

@@ -1,4 +1,4 @@
-"""Built-in bodies: closed surfaces of any fineness, centred at the origin, their length along x."""
+"""Built-in bodies: closed surfaces of any resolution, centred at the origin, length along x."""
 
 import math
 from abc import ABC, abstractmethod
@@ -18,10 +18,10 @@ class Solid(ABC):
     """A body of given sizes, m, all of them > 0."""
 
     theory: ClassVar[str] = ""
-    """Where the closed form comes from; empty where there is none."""
+    """Source of the closed form; empty without one."""
 
     open_axis: ClassVar[bool] = False
-    """Whether it has nothing to say along the x axis."""
+    """Whether the closed form does not cover motion along the x axis."""
 
     def __post_init__(self) -> None:
         for field in fields(self):
@@ -121,7 +121,7 @@ def parse_solid(text: str) -> Solid:
     word, _, numbers = text.partition(":")
     choices = ", ".join(f"{name}:{sizes}" for name, sizes in WORDS.items())
     if word not in WORDS:
-        raise PanelMethodError(f"shape {word!r} is unknown; known are {choices} (m)")
+        raise PanelMethodError(f"shape {word!r} is unknown; choose one of {choices} (m)")
     try:
         sizes = [float(number) for number in numbers.split(",")]
     except ValueError:
@@ -139,7 +139,7 @@ def parse_solid(text: str) -> Solid:
 
 
 def revolved(profile: Array, around: int) -> Panels:
-    """Surface of a profile (n, 2) of x and radius that goes from the axis to the axis, x falling.
+    """Surface of a profile (n, 2) of x and radius that starts and ends on the axis, x decreasing.
 
     The first and the last point lie on the axis; `around` panels on the circumference.
     """
@@ -165,7 +165,7 @@ def revolved(profile: Array, around: int) -> Panels:
 
 
 def _counts(count: int, ratio: float) -> tuple[int, int]:
-    """Panels along and around; the latter a multiple of four, so that y and z are alike."""
+    """Panels along and around; the latter a multiple of four, so that y and z are equivalent."""
     around = max(8, 4 * round(math.sqrt(count / ratio) / 4.0))
     return max(4, round(count / around)), around
 

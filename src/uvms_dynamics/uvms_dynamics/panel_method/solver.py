@@ -17,7 +17,7 @@ BYTES_PER_PAIR = 64
 """Peak memory per pair of panels: two complex matrices, their real parts and a decomposition."""
 
 Progress = Callable[[int, int], None]
-"""Told how many of how many motions are solved."""
+"""Called with the number of motions solved, and their total."""
 
 
 def memory_needed(count: int) -> float:
@@ -26,7 +26,7 @@ def memory_needed(count: int) -> float:
 
 
 def memory_available() -> float:
-    """Memory that may be used now, bytes; infinite where the system does not tell."""
+    """Memory that may be used now, bytes; infinite where the system does not report it."""
     try:
         with open("/proc/meminfo", encoding="ascii") as file:
             lines = dict(line.split(":", 1) for line in file)
@@ -36,12 +36,12 @@ def memory_available() -> float:
 
 
 def solve(panels: Panels, density: float, progress: Progress | None = None) -> Array:
-    """Added mass (6, 6) as the panels give it, neither symmetric nor extrapolated.
+    """Added mass (6, 6) as computed from the panels, neither symmetrised nor extrapolated.
 
     Column j is the fluid's force and moment per unit acceleration j, order X Y Z K M N, in the
     panels' frame about its origin, SI, written positive. Potential flow without free surface and
-    bottom (`free_surface=inf`, `water_depth=inf`: the Rankine source 1/r alone, so that nothing
-    depends on frequency and no panel lies "above the water"), potential formulation.
+    bottom (`free_surface=inf`, `water_depth=inf`: only the Rankine source 1/r, so that
+    nothing depends on frequency and no panel lies above the water), potential formulation.
     """
     capytaine = optional("capytaine")
     _check_memory(panels.count)
@@ -93,14 +93,14 @@ def _check_memory(count: int) -> None:
         fits = int((available / BYTES_PER_PAIR) ** 0.5)
         raise PanelMethodError(
             f"{count} panels need about {needed / 1e9:.1f} GB, {available / 1e9:.1f} GB are free:"
-            f" at most {fits} panels fit. Take a coarser mesh (decimate it with MeshLab or Blender)"
+            f" at most {fits} panels fit. Use a coarser mesh (decimate it with MeshLab or Blender)"
             " or a smaller --panels"
         )
 
 
 @contextmanager
 def _quiet() -> Iterator[None]:
-    """Without capytaine's remarks on the table of wave integrals, which is of no use here."""
+    """Without capytaine's remarks on the table of wave integrals, which is not used here."""
     logger = logging.getLogger("capytaine")
     level = logger.level
     logger.setLevel(logging.ERROR)

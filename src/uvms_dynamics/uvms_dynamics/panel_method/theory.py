@@ -8,9 +8,9 @@ from uvms_dynamics.kernels.rotations import skew
 
 
 def in_frame(matrix: Array, position: Array, rotation: Array) -> Array:
-    """Added mass (6, 6) of a body in the frame where its own has the pose (position, rotation).
+    """Added mass (6, 6) of a body in a frame in which its own has the pose (position, rotation).
 
-    X^T M X with X = [R^T, -R^T [p]x; 0, R^T], which takes a twist about the new origin, in the new
+    X^T M X with X = [R^T, -R^T [p]x; 0, R^T], which maps a twist about the new origin, in the new
     axes, to the body's own (Fossen 2011, sec. 7.5.4).
     """
     X = np.zeros((6, 6))

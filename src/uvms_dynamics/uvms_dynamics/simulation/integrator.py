@@ -2,7 +2,8 @@
 
 State x (13 + 2n + m,): position (3,) and quaternion (4,) in the world, velocity nu_r (6,) relative
 to the water in the body frame, q (n,), q_dot (n,), thrust (m,). The current is constant and
-uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c.
+uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c. The
+wrench on the base is that of the thrusters and of the tether.
 """
 
 from collections.abc import Sequence
@@ -25,10 +26,12 @@ from uvms_dynamics.kernels.motion import (
 from uvms_dynamics.kernels.numba_internals.primitives import sqrt
 from uvms_dynamics.kernels.spatial import load6, plus, spatial_at, store_spatial
 from uvms_dynamics.model.vehicle_table import Model, build_model
+from uvms_dynamics.simulation.tether import load_wrench, tether_load
 from uvms_dynamics.simulation.thrusters import Thrusters, build_thrusters, thrust_rate
 
 POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
+DEPTH = POSITION + 2
 
 
 class System(NamedTuple):
@@ -87,7 +90,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
 
     x (nx,) becomes the state at the end. Row k of states (steps+1, nx) is the state after k steps
     and row k of rates its derivative under these commands: thrust (m,) N, joint torque (n,) N m.
-    What `simulate` is made of. Raises ValueError for arrays that do not fit.
+    `simulate` is built on it. Raises ValueError for arrays that do not fit.
     """
     model, thrusters, current = system
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
@@ -110,7 +113,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
 
 @inner
 def _record(x, stage, states, rates, s):
-    """Rows s: the state and its derivative (slices would drag in numba's text formatting)."""
+    """Rows s: the state and its derivative (slices would compile numba's text formatting)."""
     for i in range(x.shape[0]):
         states[s, i] = x[i]
         rates[s, i] = stage[0, i]
@@ -120,7 +123,7 @@ def _record(x, stage, states, rates, s):
 def finish_step(
     model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
 ):
-    """Go on with x by one step; row 0 of stage holds its derivative."""
+    """Advance x by one step; row 0 of stage holds its derivative."""
     size = JOINTS + 2 * n + m
     for k in range(1, 4):
         part = step if k == 3 else 0.5 * step
@@ -149,8 +152,10 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
         work[i, RATE] = rate
         work[i, TORQUE] = effort[i - 1] + passive_torque(model, i, angle, rate)
         out[k, JOINTS + i - 1] = rate
+    down = down_in_body(a, b, c, d)
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
-    nu_r_dot = accelerate(model, work, n, down_in_body(a, b, c, d), nu_r, wrench)
+    wrench = plus(wrench, load_wrench(tether_load(model, n, x[DEPTH]), down))
+    nu_r_dot = accelerate(model, work, n, down, nu_r, wrench)
     store_spatial(out, k, VELOCITY, nu_r_dot)
     for i in range(1, n + 1):
         out[k, JOINTS + n + i - 1] = work[i, RATE]
@@ -186,7 +191,7 @@ def pose_rates(nu, a, b, c, d):
 
 @inner
 def _thruster_wrench(thrusters, x, first):
-    """Body wrench of the thrusters, whose thrust stands in x from `first` on."""
+    """Body wrench of the thrusters; their thrusts are in x from `first` on."""
     wrench = _scaled_row(thrusters, FIRST, x[first])
     for i in range(1, thrusters.shape[0]):
         wrench = plus(wrench, _scaled_row(thrusters, i, x[first + i]))

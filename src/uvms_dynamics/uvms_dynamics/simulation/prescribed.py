@@ -1,6 +1,6 @@
 """The floating vehicle under a prescribed motion of its arm: hybrid dynamics.
 
-The joints follow given q(t), q_dot(t), q_ddot(t), whatever torque that takes; the base is free:
+The joints follow given q(t), q_dot(t), q_ddot(t) with any torque that this takes; the base is free:
 
     nu_dot = M_bb(q)^-1 (tau - ID(nu_dot = 0, q_ddot)[:6]),
 
@@ -16,16 +16,17 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels import inverse_dynamics, mass_matrix
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.motion import down_in_body
-from uvms_dynamics.kernels.spatial import cross, spatial_at
+from uvms_dynamics.kernels.spatial import spatial_at
 from uvms_dynamics.model.vehicle_table import Model
-from uvms_dynamics.simulation.integrator import VELOCITY, pose_rates
+from uvms_dynamics.simulation.integrator import DEPTH, VELOCITY, pose_rates
+from uvms_dynamics.simulation.tether import load_wrench, tether_load
 
 STATE = 13
 """Position (3,) and quaternion (4,) in the world, velocity (6,) in the body frame."""
 
 
-class JointMotion(NamedTuple):
-    """The arm's motion over m steps: rows at the begin, the middle and the end of each step."""
+class PrescribedJoints(NamedTuple):
+    """The arm's motion over m steps: rows at the beginning, the middle and the end of each step."""
 
     steps: Array  # (m,) s
     q: Array  # (2m+1, n) rad
@@ -34,33 +35,24 @@ class JointMotion(NamedTuple):
 
 
 class Load(NamedTuple):
-    """A weight (N, down) and its first moment (3,) about the body origin.
+    """A weight (N, down) and its first moment (3,) about the body origin, besides the tether's.
 
-    Linear in the depth, and a part of the moment fades away: moment_fading exp(-t / fading_time).
+    A part of the moment fades away: moment_fading exp(-t / fading_time).
     """
 
     weight: float = 0.0
     moment: Array = np.zeros(3)  # N m: position times weight, body frame
-    weight_per_m: float = 0.0
-    moment_per_m: Array = np.zeros(3)
-    reference_depth: float = 0.0  # m, where the part per metre is nothing
     moment_fading: Array = np.zeros(3)
     fading_time: float = 1.0  # s
 
 
-def float_freely(model: Model, start: Array, motion: JointMotion, load: Load) -> Array:
+def float_freely(model: Model, start: Array, motion: PrescribedJoints, load: Load) -> Array:
     """States (m+1, 13) from the state `start` (13,), by classical Runge-Kutta steps."""
-    parts = (
-        [load.weight, *load.moment],
-        [load.weight_per_m, *load.moment_per_m],
-        [0.0, *load.moment_fading],
-    )
-    table = np.array(parts)
-    scales = np.array([load.reference_depth, load.fading_time])
+    table = np.array([[load.weight, *load.moment], [0.0, *load.moment_fading]])
     inverse = np.linalg.inv(base_inertia(model, motion.q))
     out = np.empty((len(motion.steps) + 1, STATE))
     out[0] = start
-    _integrate(model, table, scales, inverse, motion, out)
+    _integrate(model, table, load.fading_time, inverse, motion, out)
     return out
 
 
@@ -79,12 +71,11 @@ def base_acceleration(model, load, inverse, x, q, q_dot, q_ddot):
     quat = x[3:7]
     needed = inverse_dynamics(model, quat, x[7:], np.zeros(6), q, q_dot, q_ddot)
     down = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    turning = cross((load[1], load[2], load[3]), down)
+    wrench = load_wrench(load, down)
     tau = -needed[:6]
-    for i in range(3):
-        tau[i] += load[0] * down[i]
-        tau[3 + i] += turning[i]
     out = np.zeros(6)
+    for i in range(6):
+        tau[i] += wrench[i]
     for i in range(6):
         for j in range(6):
             out[i] += inverse[i, j] * tau[j]
@@ -92,8 +83,9 @@ def base_acceleration(model, load, inverse, x, q, q_dot, q_ddot):
 
 
 @kernel
-def _integrate(model, loads, scales, inverse, motion, states):
+def _integrate(model, loads, fading_time, inverse, motion, states):
     steps, q, q_dot, q_ddot = motion
+    n = q.shape[1]
     t = 0.0
     slope = np.empty((4, 13))
     trial = np.empty(13)
@@ -109,8 +101,8 @@ def _integrate(model, loads, scales, inverse, motion, states):
             for i in range(7):
                 slope[k, i] = rates[i]
             at = t + 0.5 * h * ((k + 1) // 2)
-            below, faded = trial[2] - scales[0], np.exp(-at / scales[1])
-            load = loads[0] + loads[1] * below + loads[2] * faded
+            load = loads[0] + np.array(tether_load(model, n, trial[DEPTH]))
+            load += loads[1] * np.exp(-at / fading_time)
             slope[k, 7:] = base_acceleration(
                 model, load, inverse[row], trial, q[row], q_dot[row], q_ddot[row]
             )

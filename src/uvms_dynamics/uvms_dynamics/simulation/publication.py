@@ -16,8 +16,8 @@ def plant_outputs(
 ) -> Iterator[Output]:
     """Topic and signal of everything at the plant's present stamp, ns.
 
-    The clock comes first. `sensor_topics` is `in_order_of_publication(vehicle)`: the IMU comes last,
-    because its sample starts the tick in the graph, and what belongs to it is in flight by then.
+    The clock comes first. `sensor_topics` is `in_order_of_publication(vehicle)`: the IMU comes
+    last, because its sample starts the tick in the graph.
     """
     yield topics.CLOCK, stamp
     yield topics.TRUE_ODOMETRY, truth.odometry

@@ -1,4 +1,4 @@
-"""Simulations of a vehicle over time: one with its whole course, or many at once."""
+"""Simulations of a vehicle over time: one with all its states, or many at once."""
 
 import operator
 
@@ -24,9 +24,9 @@ def simulate(
 ) -> Array:
     """States (steps+1, nx) from the state x (nx,) on, by Runge-Kutta steps of `step` s.
 
-    The state is laid out as in `integrator`; `make_state` makes one. thrust_command (m,) N and
+    `integrator` defines the layout of the state; `make_state` makes one. thrust_command (m,) N and
     effort (n,) N m are constant. Raises ConfigError for shapes, a step or a number of
-    steps that do not fit. Nothing looks at whether the step is stable: `Plant` does.
+    steps that do not fit. It does not check that the step is stable; `Plant` does.
     """
     _check_length(step, steps)
     start, thrust, torque = _fitting(system, x, thrust_command, effort, ())
@@ -42,9 +42,9 @@ def advance_batch(
     """States (b, nx) of b simulations after `steps` Runge-Kutta steps of `step` s.
 
     x (b, nx) are their states, thrust_command (b, m) N and effort (b, n) N m their constant
-    commands; vehicle and current are common to all. Each comes out as `simulate` would leave it,
-    but for rounding. One thread, eight simulations to a vector of the processor: 1024 take less
-    than half the time that they take one by one. Raises ConfigError as `simulate` does.
+    commands; vehicle and current are common to all. Each result is that of `simulate` up to
+    rounding. One thread, eight simulations in a vector of the processor: 1024 take less than half
+    the time that they take one by one. Raises ConfigError as `simulate` does.
     """
     _check_length(step, steps)
     out, thrust, torque = _fitting(system, x, thrust_command, effort, (len(x),))
@@ -62,7 +62,7 @@ def _check_length(step: float, steps: int) -> None:
 def _fitting(
     system: System, x: Array, thrust_command: Array, effort: Array, batch: tuple[int, ...]
 ) -> tuple[Array, Array, Array]:
-    """The arrays as the kernels want them, x a copy; the kernels read without bounds."""
+    """The arrays as the kernels need them, x a copy; the kernels do not check bounds."""
     state = np.array(x, dtype=float, order="C")
     thrust, torque = (np.ascontiguousarray(a, dtype=float) for a in (thrust_command, effort))
     n, m = int(system.model[HULL, JOINTS]), len(system.thrusters)

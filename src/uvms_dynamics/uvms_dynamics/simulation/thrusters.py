@@ -1,4 +1,4 @@
-"""Thrusters: what they do to the vehicle and how they follow a command."""
+"""Thrusters: their wrench on the vehicle and how they follow a command."""
 
 import numpy as np
 

@@ -4,8 +4,8 @@ import numpy as np
 
 from uvms_core.signals import ImuSample
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.installation import Installation
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,

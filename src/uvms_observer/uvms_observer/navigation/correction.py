@@ -3,8 +3,8 @@
     S = H P H^T + N,  d^2 = r^T S^-1 r,  K = P H^T S^-1,
     e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
 
-The Joseph form keeps P positive semidefinite under rounding. The same in plain numpy is
-`numpy_reference.py`.
+The Joseph form keeps P positive semidefinite under rounding. The tests compare it
+with the same in plain numpy.
 """
 
 import numpy as np

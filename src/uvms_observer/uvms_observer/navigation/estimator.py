@@ -9,10 +9,10 @@ import numpy as np
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
 from uvms_observer.navigation.alignment import aligned
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
 from uvms_observer.navigation.samples import Reading

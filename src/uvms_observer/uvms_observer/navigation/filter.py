@@ -19,9 +19,9 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, in_order
 from uvms_observer.navigation.state import NavigationState
 
@@ -116,10 +116,10 @@ class NavigationFilter:
         return good, faults
 
     def _step(self, stamp: int, readings: list[Reading]) -> Odometry:
-        inertial = any(reading.name == INERTIAL.name for reading in readings)
-        if self._estimator.time is None and not inertial:
+        if self._estimator.time is None and INERTIAL.name not in {each.name for each in readings}:
             raise NotAlignedError("navigation has had no IMU sample yet; it needs an attitude")
-        self._newest.update((reading.name, reading.stamp) for reading in readings)
+        for reading in readings:
+            self._newest[reading.name] = reading.stamp
         self._stamp = stamp
         self._run(stamp, readings)
         return self._estimator.odometry()
@@ -136,14 +136,15 @@ class NavigationFilter:
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
-        what = f"{reading.name}.stamp is {reading.stamp} ns; it must"
         last, oldest = newest.get(reading.name, -1), self._stamp - self._latency
+        if max(last + 1, oldest) <= reading.stamp <= stamp:
+            return
+        what = f"{reading.name}.stamp is {reading.stamp} ns; it must"
         if reading.stamp > stamp:
             raise SignalError(f"{what} not be after the step's, {stamp} ns")
         if reading.stamp <= last:
             raise SignalError(f"{what} be after the last one's, {last} ns")
-        if reading.stamp < oldest:
-            raise SignalError(f"{what} not be before the filter's time less latency, {oldest} ns")
+        raise SignalError(f"{what} not be before the filter's time less latency, {oldest} ns")
 
     def _run(self, stamp: int, readings: list[Reading]) -> None:
         readings = self._rewind(readings)

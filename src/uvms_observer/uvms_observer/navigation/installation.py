@@ -6,7 +6,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
-from uvms_observer.navigation.config import NavigationConfig
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 
 

@@ -12,7 +12,7 @@ Error state (derivation: docs/navigation.md), with A = [R_mid f]x:
     dp     +=  dv dt - A dtheta dt^2/2 - R_mid db_a dt^2/2 + A R_mid db_g dt^3/4
 
 The rotation of the Earth is left out: the map is an inertial frame here, as it is in the plant. The
-same with full matrices is `numpy_reference.py`.
+tests compare it with the same in full matrices.
 """
 
 from typing import NamedTuple

@@ -1,14 +1,17 @@
 """Samples of all sensors in the order of their stamps."""
 
 from collections.abc import Iterable, Mapping, Sequence
+from operator import itemgetter
 from typing import Any, NamedTuple
 
 from uvms_core import registry
 from uvms_core.errors import SignalError
 from uvms_core.sensors import sensor_types
 from uvms_core.vehicle import Vehicle
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
+
+_ORDER = itemgetter(0, 1)
 
 
 class Reading(NamedTuple):
@@ -55,4 +58,4 @@ class Instruments:
 
 def in_order(readings: Iterable[Reading]) -> list[Reading]:
     """Readings by stamp; of the same stamp the IMU first, which carries the state there."""
-    return sorted(readings, key=lambda reading: reading[:2])
+    return sorted(readings, key=_ORDER)

@@ -8,6 +8,13 @@ from uvms_core.signals import Array, to_nanoseconds
 from uvms_core.start import StartConfig
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.postures import (
+    STOWED,
+    AnglesDeg,
+    check_limits,
+    joint_angles_deg,
+    posture_deg,
+)
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 
@@ -18,13 +25,18 @@ class PlantConfig(StartConfig):
     step_s: float = Field(0.005, gt=0.0, le=0.05, description="Runge-Kutta step, s")
     control_period_s: ControlPeriod = CONTROL_PERIOD_S
     initial_rpy_deg: tuple[float, float, float] = Field(
-        (0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX), degrees"
+        (0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX) at the start, degrees"
     )
     initial_velocity: tuple[float, float, float, float, float, float] = Field(
-        (0.0,) * 6, description="nu over ground, body frame, m/s and rad/s"
+        (0.0,) * 6, description="velocity over ground at the start, body frame, m/s and rad/s"
     )
-    initial_joints_deg: tuple[float, ...] = Field(
-        (), description="joint angles, degrees; empty: the vehicle's stowed pose"
+    initial_posture: str = Field(
+        STOWED, description="posture of the vehicle file that the arm starts in, such as `home`"
+    )
+    initial_joints_deg: AnglesDeg = Field(
+        (),
+        description="joint angles at the start, degrees, instead of the posture's: one a joint, or"
+        " by joint name for some; empty: the posture",
     )
     current_ned_m_s: tuple[float, float, float] = Field(
         (0.0, 0.0, 0.0), description="velocity of the water in map_ned, m/s"
@@ -43,19 +55,26 @@ def steps_in(period: int, config: PlantConfig, what: str) -> int:
 
 
 def initial_joints(vehicle: Vehicle, config: PlantConfig) -> Array:
-    """Joint angles (n,) at the start, rad; ConfigError for a wrong number or beyond a limit."""
-    degrees = config.initial_joints_deg or vehicle.arm.stowed_deg
-    if len(degrees) != vehicle.n_joints:
-        raise ConfigError(
-            f"initial_joints_deg: has {len(degrees)} values for {vehicle.n_joints} joints"
-        )
-    for joint, angle in zip(vehicle.arm.joints, degrees, strict=True):
-        if not joint.lower_deg <= angle <= joint.upper_deg:
-            raise ConfigError(
-                f"initial_joints_deg: {angle:g} of joint {joint.name} is outside its limits"
-                f" {joint.lower_deg:g} to {joint.upper_deg:g}"
-            )
-    return np.radians(degrees)
+    """Joint angles (n,) at the start, rad; raises as `initial_joints_deg`."""
+    return np.radians(initial_joints_deg(vehicle, config))
+
+
+def initial_joints_deg(vehicle: Vehicle, config: PlantConfig) -> tuple[float, ...]:
+    """Joint angles (n,) at the start, degrees.
+
+    Raises:
+        ConfigError: an unknown posture or joint, a wrong number of values, or one beyond a limit.
+    """
+    try:
+        posture = posture_deg(vehicle.arm, config.initial_posture)
+    except ConfigError as fault:
+        raise ConfigError(f"initial_posture: {fault}") from fault
+    try:
+        angles = joint_angles_deg(vehicle.arm, config.initial_joints_deg or posture, posture)
+        check_limits(vehicle.arm.joints, angles)
+    except ConfigError as fault:
+        raise ConfigError(f"initial_joints_deg: {fault}") from fault
+    return angles
 
 
 def initial_state(vehicle: Vehicle, config: PlantConfig) -> Array:

@@ -1,4 +1,4 @@
-"""What is told of a plant whose state has left the finite numbers."""
+"""The error of a plant with a state that is no longer finite."""
 
 import numpy as np
 
@@ -17,7 +17,7 @@ def check_finite(vehicle: Vehicle, step: float, stamp: int, states: Array, rates
         return
     row = int(np.argmin(np.isfinite(states).all(axis=1) & np.isfinite(rates).all(axis=1)))
     what, table = ("", states) if not np.isfinite(states[row]).all() else ("derivative of ", rates)
-    fastest = np.abs(rates[row - 1] if row else states[0])  # of several, the one that ran ahead
+    fastest = np.abs(rates[row - 1] if row else states[0])  # of several, the fastest
     k = int(np.argmax(np.where(np.isfinite(table[row]), -1.0, fastest)))
     time = to_seconds(stamp) - (len(states) - 1 - row) * step
     then = f"; {step:g} s before it was {table[row - 1, k]:.3g}" if row else ""

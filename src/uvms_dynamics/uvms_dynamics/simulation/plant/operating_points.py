@@ -1,4 +1,4 @@
-"""States of the plant that a step must be able to integrate: at rest, at its stops, at speed."""
+"""States that a stable step must be able to integrate: at rest, at the stops, at top speed."""
 
 from collections.abc import Iterator
 from typing import NamedTuple
@@ -18,11 +18,11 @@ AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 _LINEAR = 3  # so many of them are translations
 
 _FASTEST = np.array([10.0] * _LINEAR + [2.0 * np.pi] * _LINEAR)
-"""Bound of the top speed, m/s and rad/s: no hull gets there that has next to no damping."""
+"""Bound of the top speed, m/s and rad/s, for hulls with hardly any damping."""
 
 
 _ENTERING = 1e-2
-"""How deep a joint is that strikes its stop, as a part of how deep its drive presses it."""
+"""Penetration of a joint that hits its stop, as a fraction of that under its full torque."""
 
 
 class Point(NamedTuple):
@@ -31,13 +31,13 @@ class Point(NamedTuple):
     name: str
     state: Array
     effort: Array
-    strikes: bool = False  # a stop that begins within a step
+    strikes: bool = False  # the stop begins within a step
 
 
 def operating_points(vehicle: Vehicle, model: Model, config: PlantConfig) -> Iterator[Point]:
     """The start, rest in the stiffest pose, joints against their stops, and the greatest speeds.
 
-    Where nothing else is said the vehicle moves as it does at the start: in a current, with it.
+    Unless stated otherwise the vehicle moves as it does at the start: in a current, with it.
     """
     start, stowed = initial_state(vehicle, config), np.radians(vehicle.arm.stowed_deg)
     rates = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
@@ -69,7 +69,7 @@ def _pose_name(q: Array) -> str:
 
 
 def _held(model: Model, name: str, state: Array, n: int) -> Point:
-    """The point with the torques that keep the joints at their rates but for friction."""
+    """The point with the torques that keep the joints at their rates, friction left out."""
     nu_r, q, q_dot = state[VELOCITY:JOINTS], state[JOINTS : JOINTS + n], state[JOINTS + n :][:n]
     quaternion, still = state[QUATERNION:VELOCITY], np.zeros(n)
     force = inverse_dynamics(model, quaternion, nu_r, np.zeros(6), q, q_dot, still)
@@ -77,7 +77,7 @@ def _held(model: Model, name: str, state: Array, n: int) -> Point:
 
 
 def _against_stops(vehicle: Vehicle, start: Array, q: Array, pressing: bool) -> Point:
-    """Those joints that a pose has at a limit, pressed by their drives or striking the stop."""
+    """The joints that a pose has at a limit, pressed by their drives or hitting the stop."""
     joints = vehicle.arm.joints
     lower, upper = joint_limits(vehicle)
     side = 1.0 * (q >= upper) - 1.0 * (q <= lower)
@@ -94,7 +94,7 @@ def _against_stops(vehicle: Vehicle, start: Array, q: Array, pressing: bool) -> 
 
 
 def _at_top_speed(vehicle: Vehicle, rest: Array) -> Iterator[tuple[str, Array]]:
-    """Through the water along each axis as fast as all thrusters push the hull alone."""
+    """At the speed along each axis to which all thrusters drive the hull alone."""
     hull = vehicle.hull
     limits = [thruster.limit_n for thruster in vehicle.thrusters]
     push = np.abs(thruster_matrix(vehicle)) @ limits

@@ -36,7 +36,7 @@ from uvms_dynamics.simulation.thrusters import build_thrusters
 class Plant:
     """One augmented system of 6 + n degrees of freedom, its thrusters and its sensors.
 
-    `sense()` and `truth()` are of the present stamp; `step(...)` goes one control period on.
+    `sense()` and `truth()` are for the present stamp, `step(...)` advances by one control period.
     Raises ConfigError where periods are not multiples of the step or the step is unstable.
     """
 
@@ -80,18 +80,18 @@ class Plant:
         )
 
     def safe_thrust(self) -> ThrusterCommand:
-        """What the plant falls back to where no thruster command comes: no thrust."""
+        """The command that the plant uses where none arrives: no thrust."""
         return ThrusterCommand(self._stamp, np.zeros(self._vehicle.n_thrusters))
 
     def safe_effort(self) -> JointCommand:
-        """What the plant falls back to where no joint command comes: no torque."""
+        """The command that the plant uses where none arrives: no torque."""
         return JointCommand(self._stamp, np.zeros(self._vehicle.n_joints))
 
     def step(self, thruster: ThrusterCommand, joints: JointCommand) -> None:
-        """Go on by one control period under constant commands; drives apply what they can.
+        """Advance by one control period under constant commands, cut at the drives' limits.
 
-        Raises SignalError for a command of wrong size or that is not finite (the plant then stays
-        where it is), PlantDiverged where the state leaves the finite numbers.
+        Raises SignalError for a command of wrong size or that is not finite (the plant then does
+        not move), PlantDiverged where the state is no longer finite.
         """
         checks.check("thruster_command", thruster, m=self._vehicle.thruster_names)
         checks.check("joint_command", joints, n=self._vehicle.joint_names)

@@ -1,4 +1,4 @@
-"""Which Runge-Kutta step the plant stands: linearised about the states that it gets into.
+"""The largest stable Runge-Kutta step of the plant, linearized about the states it can reach.
 
 A step h follows a mode of eigenvalue lambda by the factor R(h lambda), the equation itself by
 exp(h lambda). A step is refused where some mode that decays, or only swings, grows under it
@@ -32,20 +32,20 @@ from uvms_dynamics.simulation.thrusters import build_thrusters
 Complex = NDArray[np.complex128]
 
 _LONGEST = 4.0
-"""Greatest |h lambda| looked at: the region of stability of the method ends before."""
+"""Largest |h lambda| searched: the stability region of the method ends before."""
 
 _SLOW = 0.2
-"""Modes slower than this part of the fastest do not bound the step: the region's radius is between
-1 and 4 in every direction, so the fastest does."""
+"""Modes slower than this fraction of the fastest do not bound the step: the radius of the region is
+between 1 and 4 in every direction, so the fastest does."""
 
 _ROUNDING, _FOLLOWED = 1e-9, 1e-2
-"""What a mode may gain in a step: nothing but rounding where it decays, and a hundredth more than
-it does in truth where it grows."""
+"""How much a mode may grow in a step: only by rounding where it decays, and by a hundredth more
+than the exact solution where it grows."""
 
 
 _BOUNCE = 2.2
-"""Greatest |h lambda| of an elastic stop. The kink where it begins falls anywhere in a step, which
-lends energy to some bounces and takes it from others: up to 2.3 they lose it in the mean."""
+"""Largest |h lambda| of an elastic stop. The kink where it begins is anywhere in a step, which adds
+energy to some bounces and takes it from others: up to 2.3 they lose energy on average."""
 
 
 class Bound(NamedTuple):
@@ -74,7 +74,7 @@ def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:
     system = System(build_model(vehicle), build_thrusters(vehicle), current)
     points = list(operating_points(vehicle, system.model, config))
     slopes = np.array([jacobian(vehicle, system, point) for point in points])
-    # A state without finite rates is no matter of the step: the plant says what is wrong with it.
+    # A state without finite rates does not depend on the step: the plant reports it.
     slopes[~np.isfinite(slopes).all(axis=(1, 2))] = 0.0
     eigenvalues = np.linalg.eigvals(slopes).astype(complex)
     eigenvalues[np.abs(eigenvalues) < _SLOW * np.abs(eigenvalues).max()] = 0.0
@@ -87,7 +87,10 @@ def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:
 
 
 def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
-    """Slope (nx-3, nx-3) of the state's rate, without the position, which nothing depends on."""
+    """Slope (nx-3, nx-3) of the state's rate, without the position.
+
+    Only a tether depends on it, and its bounds keep that mode slow.
+    """
     n = vehicle.n_joints
     scratch, thrust = make_scratch(system), point.state[JOINTS + 2 * n :].copy()
     row, rate = np.empty((1, len(point.state))), np.empty((1, len(point.state)))
@@ -104,7 +107,7 @@ def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
 
 
 def _differences(vehicle: Vehicle, point: Point) -> Array:
-    """Half widths (nx,) of the central differences, short against friction, stops and slew."""
+    """Half widths (nx,) of the central differences, small against friction, stops and slew."""
     n, joints, thrusters = vehicle.n_joints, vehicle.arm.joints, vehicle.thrusters
     result = 1e-6 * np.maximum(1.0, np.abs(point.state))
     width = np.radians([joint.coulomb_width_deg_s for joint in joints])
@@ -117,7 +120,7 @@ def _differences(vehicle: Vehicle, point: Point) -> Array:
 
 
 def stable_steps(eigenvalues: Complex) -> Array:
-    """Greatest step for each eigenvalue, 1/s; infinite where any step will do."""
+    """Greatest step for each eigenvalue, 1/s; infinite where any step is stable."""
     size = np.abs(eigenvalues)
     result = np.full(size.shape, math.inf)
     result[size > 0.0] = _radii(eigenvalues[size > 0.0] / size[size > 0.0]) / size[size > 0.0]
@@ -125,7 +128,7 @@ def stable_steps(eigenvalues: Complex) -> Array:
 
 
 def _radii(direction: Complex) -> Array:
-    """Greatest |z| along each direction (k,), unit complex numbers, with all before it stable."""
+    """Largest |z| along each direction (k,), unit complex numbers, with all below it stable."""
     radii = np.linspace(0.0, _LONGEST, 101)
     bad = _gains_too_much(radii[:, None] * direction)
     first = np.argmax(bad, axis=0)  # 0 where none is bad
@@ -138,7 +141,7 @@ def _radii(direction: Complex) -> Array:
 
 
 def amplification(z: Complex) -> Complex:
-    """R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24: what one Runge-Kutta step makes of exp(z)."""
+    """R(z) = 1 + z + z^2/2 + z^3/6 + z^4/24: the factor of one Runge-Kutta step, for exp(z)."""
     return 1.0 + z * (1.0 + z / 2.0 * (1.0 + z / 3.0 * (1.0 + z / 4.0)))
 
 
@@ -148,7 +151,7 @@ def _gains_too_much(z: Complex) -> NDArray[np.bool_]:
 
 
 def cause_of(vehicle: Vehicle, bound: Bound) -> str:
-    """What the mode is made of: the part with the greatest share in it, and why it is fast.
+    """The cause of the mode: the part with the largest share in it, and why it is fast.
 
     Shares are participation factors |left x right eigenvector|, the singular vectors that
     belong to the least singular value of A - lambda.

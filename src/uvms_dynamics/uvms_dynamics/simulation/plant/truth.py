@@ -11,7 +11,8 @@ from uvms_dynamics.kernels.layout import HULL
 from uvms_dynamics.kernels.layout import JOINTS as JOINTS_COUNT
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_dynamics.model.vehicle_table import Model
-from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.simulation.integrator import DEPTH, JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.simulation.tether import tether_wrench
 
 
 @dataclass(frozen=True)
@@ -45,8 +46,8 @@ def true_disturbance(
     """What acts on the vehicle besides the thrusters, from the true state and accelerations.
 
     restoring: eq. (13). coupling: eq. (14)-(15) with the true accelerations, arm in moving water.
-    external: what the current does to the hull, the wrench of the water moving as it does less
-    that of still water at the same motion over ground,
+    external: the pull of the tether, and what the current does to the hull, the wrench of the water
+    moving as it does less that of still water at the same motion over ground,
     W(nu_r, nu_r_dot) - W(nu, nu_dot), W = -(M_A nu_dot + C_A nu + D nu).
     """
     n = int(model[HULL, JOINTS_COUNT])
@@ -57,8 +58,13 @@ def true_disturbance(
         stamp,
         restoring_wrench(model, quat, q),
         coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot),
-        _current_on_hull(model, quat, nu_r, nu_r_dot, current),
+        _current_on_hull(model, quat, nu_r, nu_r_dot, current) + _tether_wrench(model, state, n),
     )
+
+
+def _tether_wrench(model: Model, state: Array, n: int) -> Array:
+    down = quat_to_matrix(state[QUATERNION:VELOCITY])[2]
+    return tether_wrench(model, n, state[DEPTH], down)
 
 
 def _current_on_hull(

@@ -6,9 +6,9 @@ from uvms_core.geodesy import geodetic_to_ned
 from uvms_core.signals import Array, GpsSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Gps
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.position import correct_position
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import NavigationState
 
 

@@ -15,10 +15,10 @@ from uvms_dynamics.kernels.rotations import (
     rotation_vector_to_quat,
 )
 from uvms_observer.navigation.arrays import transposed
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import attitude_variance
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 

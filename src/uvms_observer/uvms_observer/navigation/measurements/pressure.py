@@ -7,9 +7,9 @@ from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Pressure
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_observer.navigation.config import NavigationConfig
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import DEPTH_BIAS, SIZE, NavigationState
 
 

@@ -1,4 +1,4 @@
-"""What a benchmark yields: figures with what they are compared with, and targets."""
+"""What a benchmark yields: metrics with their references and targets."""
 
 import json
 import operator
@@ -9,7 +9,7 @@ _TESTS = {">=": operator.ge, "<=": operator.le}
 
 @dataclass(frozen=True)
 class Target:
-    """What a figure's `ratio` or `value` should be, such as Target("ratio", ">=", 1.0)."""
+    """What a metric's `ratio` or `value` should be, such as Target("ratio", ">=", 1.0)."""
 
     field: str
     sign: str
@@ -18,18 +18,18 @@ class Target:
     def __str__(self) -> str:
         return f"{self.field} {self.sign} {self.bound:g}"
 
-    def met(self, figure: "Figure") -> bool:
-        """Whether the figure is as it should be; what could not be measured is not."""
-        number = getattr(figure, self.field)
+    def met(self, metric: "Metric") -> bool:
+        """Whether the metric meets the target; one that could not be measured does not."""
+        number = getattr(metric, self.field)
         return number is not None and _TESTS[self.sign](number, self.bound)
 
 
 @dataclass(frozen=True)
-class Figure:
+class Metric:
     """One line of the output.
 
-    The ratio is our value over the reference's in the same unit: for times, errors and disturbances
-    less is better, for rates more.
+    The ratio is our value over the reference's in the same unit: lower is better
+    for times, errors and disturbances, higher for rates.
     """
 
     name: str
@@ -40,7 +40,7 @@ class Figure:
     target: Target | None = None
 
     def line(self) -> str:
-        """The figure as one JSON object."""
+        """The metric as one JSON object."""
         return json.dumps(
             {
                 "name": self.name,

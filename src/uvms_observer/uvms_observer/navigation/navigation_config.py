@@ -12,7 +12,7 @@ from uvms_observer.interfaces import NavigationEstimator
 
 
 class NoiseFloor(Config):
-    """Least measurement noise (std) that the filter assumes: no sensor is perfect to it."""
+    """Lower bounds of the measurement noise (std) that the filter assumes."""
 
     attitude_deg: float = Field(0.001, gt=0.0, description="roll, pitch and heading, deg")
     velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
@@ -49,7 +49,7 @@ class NavigationConfig(PluginConfig, StartConfig):
         0.25,
         ge=0.0,
         le=10.0,
-        description="a sample that comes this much late is still used, at its own stamp, s",
+        description="largest delay of a sample that is still used, at its own stamp, s",
     )
     gate_probability: float = Field(
         0.9999,
@@ -60,7 +60,7 @@ class NavigationConfig(PluginConfig, StartConfig):
     gate_timeout_s: float = Field(
         5.0,
         gt=0.0,
-        description="when a sensor has been rejected for this long the estimate is taken to be "
-        "wrong: its covariance is widened and the sensor is used, s",
+        description="after rejecting a sensor for this long, the filter widens its covariance and "
+        "accepts the sensor, s",
     )
     noise_floor: NoiseFloor = NoiseFloor()

@@ -1,0 +1,137 @@
+"""The goal of a scenario: a path of the end effector or a motion of the joints, for any arm."""
+
+import numpy as np
+from pydantic import Field, model_validator
+
+from uvms_bringup.errors import ScenarioError
+from uvms_core.config import Config
+from uvms_core.errors import ConfigError
+from uvms_core.signals import Array, JointGoal, PathGoal
+from uvms_core.vehicle import Vehicle, load_vehicle
+from uvms_core.vehicle.frames import arm_length
+from uvms_core.vehicle.locate import vehicle_path
+from uvms_core.vehicle.postures import JointAngles, joint_angles_deg
+from uvms_dynamics import build_model, end_effector
+from uvms_dynamics.kernels.rotations import matrix_to_quat, rpy_to_quat
+from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.plant.config import initial_joints, initial_joints_deg
+from uvms_planner import PathSpec
+
+
+class JointMotionSpec(Config):
+    """A motion of the joints alone, from rest to rest between its points."""
+
+    times_s: tuple[float, ...] = Field(
+        min_length=1, description="time of each point after the start, > 0 and increasing, s"
+    )
+    positions_deg: tuple[JointAngles, ...] = Field(
+        description="joint angles at each point, degrees: a posture of the vehicle file by name,"
+        " one value a joint, or values by joint name (other joints stay where they are)"
+    )
+
+    @model_validator(mode="after")
+    def _is_table(self) -> "JointMotionSpec":
+        pairs = zip((0.0, *self.times_s), self.times_s, strict=False)
+        if not all(before < after for before, after in pairs):
+            raise ValueError(f"times_s must be > 0 and increasing, are {list(self.times_s)}")
+        if len(self.positions_deg) != len(self.times_s):
+            raise ValueError(
+                f"positions_deg has {len(self.positions_deg)} rows for {len(self.times_s)} times"
+            )
+        return self
+
+    def angles_deg(self, vehicle: Vehicle, start: tuple[float, ...]) -> list[tuple[float, ...]]:
+        """Angles (n,) of all joints at each point, degrees, after those at the start (n,).
+
+        Raises:
+            ScenarioError: a point does not fit the vehicle; says which, and what the vehicle has.
+        """
+        points = [start]
+        for k, angles in enumerate(self.positions_deg):
+            try:
+                points.append(joint_angles_deg(vehicle.arm, angles, points[-1]))
+            except ConfigError as fault:
+                raise ScenarioError(f"goal.joints.positions_deg.{k}: {fault}") from fault
+        return points[1:]
+
+
+class Goal(Config):
+    """What the planner is asked for: a path of the end effector, a joint motion, or nothing."""
+
+    path: PathSpec | None = Field(
+        None, description="path of the end effector, relative to where it starts"
+    )
+    path_made_for: str | None = Field(
+        None,
+        description="vehicle (name or file) that the path's sizes were chosen for: with another"
+        " arm the path is scaled by the ratio of the arms' lengths; none: it is not scaled",
+    )
+    joints: JointMotionSpec | None = Field(None, description="motion of the joints")
+
+    @model_validator(mode="after")
+    def _one_of_them(self) -> "Goal":
+        if self.path is not None and self.joints is not None:
+            raise ValueError("a goal has `path` or `joints`, not both")
+        return self
+
+    def build(self, vehicle: Vehicle, plant: PlantConfig) -> PathGoal | JointGoal | None:
+        """The goal of a run of this vehicle that starts as `plant` says.
+
+        Raises:
+            ScenarioError: the joint motion does not fit the vehicle.
+            VehicleFileError: there is no vehicle `path_made_for`.
+        """
+        own = self.for_vehicle(vehicle, plant)
+        if own.path is not None:
+            return own.path.goal(*start_of_end_effector(vehicle, plant))
+        if own.joints is not None:
+            positions = np.deg2rad(np.array(own.joints.positions_deg))
+            return JointGoal(np.array(own.joints.times_s), positions)
+        return None
+
+    def for_vehicle(self, vehicle: Vehicle, plant: PlantConfig) -> "Goal":
+        """The same goal in numbers for this vehicle: no posture names, and the path scaled."""
+        if self.path is not None:
+            return Goal(path=scaled(self.path, self._scale(vehicle)))
+        if self.joints is not None:
+            points = self.joints.angles_deg(vehicle, initial_joints_deg(vehicle, plant))
+            return Goal(joints=self.joints.model_copy(update={"positions_deg": tuple(points)}))
+        return self
+
+    def _scale(self, vehicle: Vehicle) -> float:
+        if self.path_made_for is None:
+            return 1.0
+        original = load_vehicle(vehicle_path(self.path_made_for))
+        return arm_length(vehicle.arm) / arm_length(original.arm)
+
+    @property
+    def duration_s(self) -> float:
+        """How long the goal takes."""
+        if self.path is not None:
+            return self.path.duration_s
+        return self.joints.times_s[-1] if self.joints is not None else 0.0
+
+
+def scaled(path: PathSpec, factor: float) -> PathSpec:
+    """The path with all its lengths times a factor, and the same times."""
+    phases = tuple(
+        phase.model_copy(
+            update={
+                "to_m": tuple(factor * x for x in phase.to_m),
+                "bulge_m": tuple(factor * x for x in phase.bulge_m),
+            }
+        )
+        for phase in path.phases
+    )
+    return path.model_copy(update={"phases": phases})
+
+
+def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, Array]:
+    """Position (3,) m and quaternion (4,) of the tool in map_ned at the start of a run."""
+    position, R_world_tool = end_effector(
+        build_model(vehicle),
+        np.array(plant.initial_position_m, dtype=float),
+        rpy_to_quat(*np.deg2rad(np.array(plant.initial_rpy_deg, dtype=float))),
+        initial_joints(vehicle, plant),
+    )
+    return position, matrix_to_quat(R_world_tool)
