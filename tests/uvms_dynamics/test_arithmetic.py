@@ -81,7 +81,7 @@ def test_hyperbolic_tangent_is_the_c_librarys_to_a_few_bits():
 
 
 @pytest.mark.parametrize("value", [math.nan, math.inf, -math.inf])
-def test_what_is_no_number_stays_none(value):
+def test_what_is_not_finite_becomes_nan(value):
     found = np.empty((1, 2))
     sine_cosine_of(np.array([value]), found)
     assert np.isnan(found).all()
@@ -111,7 +111,7 @@ def test_drag_coefficients_lie_on_the_lines_between_the_tables_points(column):
     np.testing.assert_array_equal(found[below], values[0])
 
 
-def test_no_number_of_reynolds_reads_beyond_the_table():
+def test_no_reynolds_number_reads_beyond_the_table():
     found = np.empty(3)
     first = np.int64(MODEL[HULL, CROSS_FLOW])
     coefficient_of(MODEL, first, np.array([math.nan, math.inf, -1.0]), found)

@@ -16,7 +16,7 @@ EXACT = {0: (2.137, 1.678), 45: (1.787, 1.247), 90: (1.122, 0.546), 135: (0.709,
 
 
 def felt(elbow_deg):
-    """What swing and shoulder feel."""
+    """Inertias about swing and shoulder."""
     angles = np.radians([0.0, 0.0, elbow_deg, 0.0])
     return np.diag(arm_added_inertia(VEHICLE, angles))[:2]
 

@@ -1,4 +1,4 @@
-"""Only the motion relative to the water counts, and the truth says what the current does."""
+"""Only the motion relative to the water counts; the truth holds what the current does."""
 
 import numpy as np
 import pytest
@@ -24,7 +24,7 @@ CASES = st.tuples(st.integers(0, 2**32 - 1), st.sampled_from([1, 3, 6]))
 @settings(max_examples=25, deadline=None, derandomize=True)
 @given(CASES)
 def test_the_same_relative_flow_gives_the_same_force(seed_and_n):
-    """Over ground in any current, by the readable form: the kernel's force for the flow alone."""
+    """Over ground in any current, by the numpy reference: the kernel's force for the flow alone."""
     seed, n = seed_and_n
     vehicle, rng = random_vehicle(seed, n), np.random.default_rng(seed)
     quat, nu_r, nu_r_dot, *joints = random_motion(rng, n)

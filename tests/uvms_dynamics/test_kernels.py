@@ -1,4 +1,4 @@
-"""Every kernel against its readable twin, on vehicles that share nothing but the schema."""
+"""Every kernel against its numpy reference, on vehicles that share nothing but the schema."""
 
 import numpy as np
 import pytest
@@ -86,7 +86,7 @@ def test_mass_matrix_is_symmetric_and_positive_definite(seed_and_n):
 
 @quick
 @given(CASES)
-def test_forward_dynamics_is_the_twins_solve(seed_and_n):
+def test_forward_dynamics_is_the_references_solution(seed_and_n):
     vehicle, model, motion, rng = case(*seed_and_n)
     current, tau = rng.normal(size=3), rng.normal(scale=20.0, size=6 + len(motion.q))
     over_ground = newton_euler.forward_dynamics(
@@ -180,7 +180,7 @@ def test_drag_table_holds_the_files_coefficients():
 
 
 @pytest.mark.parametrize("speed", [0.0, 1e-12, 1e3])
-def test_drag_beyond_the_ends_of_the_table_is_that_of_the_twin(speed):
+def test_drag_beyond_the_ends_of_the_table_is_that_of_the_reference(speed):
     vehicle, model, motion, _ = case(5, 2)
     still = motion._replace(
         nu=motion.nu * speed, nu_dot=np.zeros(6), q_dot=np.zeros(2), q_ddot=np.zeros(2)

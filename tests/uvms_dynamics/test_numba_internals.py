@@ -1,4 +1,4 @@
-"""What rests on numba's internals stays in its folder and says which versions it is for."""
+"""What rests on numba's internals stays in its folder and names the versions it is for."""
 
 import ast
 from importlib.metadata import requires

@@ -58,8 +58,8 @@ def test_the_same_tool(pair):
     )
 
 
-def test_the_twins_know_both_forms(pair):
-    """The numpy twin goes through placement, turn and distal pose one by one."""
+def test_the_numpy_reference_knows_both_forms(pair):
+    """The numpy reference goes through placement, turn and distal pose one by one."""
     _, urdf, motion = pair
     model = build_model(urdf)
     np.testing.assert_allclose(

@@ -101,9 +101,7 @@ def _compile_kernels(context):
 def _finish(kernels, context):
     with Stage("compiling the numerical kernels", context.log) as running:
         running.watch(kernels)
-    if kernels.fault is None:
-        print("[set-up] %s" % kernels.line)
-    else:
+    if kernels.fault is not None:
         print("[set-up] kernels not compiled ahead; the first run will try.\n%s" % kernels.fault)
 
 

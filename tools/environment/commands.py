@@ -112,7 +112,7 @@ class Stage:
     """One stage on the screen: `with Stage("...", log) as stage: stage.run(...)`.
 
     On a terminal it is one line that shows what goes on, with the seconds, and after it the last
-    line of a `Background`; elsewhere a line at the beginning and one at the end.
+    line of a `Background`; elsewhere a line at the beginning and one at the end, with the same.
     """
 
     def __init__(self, title, log, beside=None):
@@ -133,6 +133,8 @@ class Stage:
         self._ticker.join()
         if kind is None:
             text = "[set-up] %s: %.0f s" % (self._title, time.monotonic() - self._begun)
+            if not self._live and self._beside is not None and self._beside.running:
+                text += "; beside it: " + self._beside.line
             self._print(("\r\x1b[K" if self._live else "") + text)
         elif self._live:
             self._print("")

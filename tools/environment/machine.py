@@ -69,8 +69,8 @@ def _tools():
 def _cmake_version():
     if shutil.which("cmake") is None:
         return (0, 0)
-    said = subprocess.run(["cmake", "--version"], stdout=subprocess.PIPE, universal_newlines=True)
-    found = re.search(r"version (\d+)\.(\d+)", said.stdout)
+    answer = subprocess.run(["cmake", "--version"], stdout=subprocess.PIPE, universal_newlines=True)
+    found = re.search(r"version (\d+)\.(\d+)", answer.stdout)
     return tuple(map(int, found.groups())) if found else (0, 0)
 
 

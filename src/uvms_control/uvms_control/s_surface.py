@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from math import factorial
 
 import numpy as np
-from scipy.special import bernoulli
 
 from uvms_control.errors import ControlSetupError
 from uvms_core.signals import Array
@@ -76,6 +75,8 @@ def sigmoid_series(s: Array, terms: int) -> Array:
     sum over n of 2^(2n) (2^(2n) - 1) B_2n (s/2)^(2n-1) / (2n)!, eq. (23), signs corrected from
     the print.
     """
+    from scipy.special import bernoulli  # no controller needs it
+
     numbers = bernoulli(2 * terms)
     half = 0.5 * np.asarray(s, dtype=np.float64)
     total = np.zeros_like(half)

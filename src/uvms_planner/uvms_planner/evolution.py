@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.jit import inner, kernel, shared
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge
 from uvms_planner.genome import decode, encode
@@ -100,7 +100,7 @@ def fill_elite(valid, violation, cost, elite):
             taken[best] = True
 
 
-@kernel
+@shared
 def breed(chromosomes, fitness, settings, rng, children, start):
     """Fill `children` (p, bits) from row `start` on: selection, crossover, mutation."""
     bits = chromosomes.shape[1]

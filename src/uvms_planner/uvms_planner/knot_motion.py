@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_dynamics.kernels.jit import kernel
+from uvms_dynamics.kernels.jit import kernel, shared
 from uvms_planner.linear import copy_into
 from uvms_planner.problem import configuration_after
 from uvms_planner.projection import configuration_jacobian, weighted_step
@@ -51,7 +51,7 @@ def meet(model, problem, end, tool_rate, tool_acceleration, rate, acceleration):
     _meet(problem, jacobian, target, acceleration)
 
 
-@kernel
+@shared
 def _meet(problem, jacobian, target, vector):
     """Change `vector` (m,) in place the least way so that J vector = target."""
     equations = 6 if problem.oriented else 3
@@ -67,7 +67,7 @@ def _meet(problem, jacobian, target, vector):
             vector[i] += step[i]
 
 
-@kernel
+@shared
 def _subtract_product(matrix, vector, out):
     """Out - matrix vector, in place."""
     for a in range(matrix.shape[0]):

@@ -3,10 +3,10 @@
 Copies are written as loops: the errors that a slice assignment may raise cost seconds to compile.
 """
 
-from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.jit import inner, shared
 
 
-@kernel
+@shared
 def solve_in_place(a, b, size):
     """Solve a x = b for the leading `size` rows by Gaussian elimination with partial pivoting.
 

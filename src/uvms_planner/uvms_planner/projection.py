@@ -7,7 +7,7 @@ damped, weighted Newton steps solve y(c) = y_d for the increment of c next to th
 import numpy as np
 
 from uvms_dynamics import end_effector, end_effector_jacobian
-from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.jit import inner, kernel, shared
 from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.linear import solve_in_place
 from uvms_planner.problem import VEHICLE, configuration_after, yaw_quaternion
@@ -78,7 +78,7 @@ def within_tolerance(problem, distance, angle):
     return distance < problem.position_tolerance and angle < problem.orientation_tolerance
 
 
-@kernel
+@shared
 def weighted_step(jacobian, error, readiness, free, damping, equations, step):
     """Fill `step` (m,) with W J^T (J W J^T + lambda^2 tr I)^-1 error over the free variables."""
     gram = np.zeros((6, 6))

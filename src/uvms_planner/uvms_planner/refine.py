@@ -5,7 +5,7 @@ Without it the bits of the last improvement would shake the vehicle from step to
 
 import numpy as np
 
-from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.jit import inner, shared
 from uvms_planner.constraints import better
 from uvms_planner.fitness import judge, judged_disturbance
 from uvms_planner.linear import copy_into, solve_in_place
@@ -97,7 +97,7 @@ def constrained_step(problem, increment, hessian, gradient, jacobian, error, ste
     return True
 
 
-@kernel
+@shared
 def refine(model, problem, increment, violation, cost, rounds):
     """Improve `increment` (m,) in place, at most `rounds` steps; return (violation, cost, judged).
 

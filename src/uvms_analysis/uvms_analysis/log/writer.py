@@ -1,4 +1,8 @@
-"""Write a run to MCAP in the format of rosbag2, safe against being killed."""
+"""Write a run to MCAP in the format of rosbag2, safe against being killed.
+
+The writer is the mcap package's; mcap_ros2's would encode each message anew, many times slower than
+`uvms_core.cdr` does, and both lose what they have buffered when the process is killed.
+"""
 
 import os
 from collections.abc import Mapping

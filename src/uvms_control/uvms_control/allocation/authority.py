@@ -1,7 +1,6 @@
 """What a thruster layout can do: its authority on each axis, its missing axes."""
 
 import numpy as np
-from scipy.optimize import linprog
 
 from uvms_core.signals import Array
 
@@ -16,6 +15,8 @@ def axis_authority(matrix: Array, limits: Array) -> Array:
 
 
 def _pure_authority(matrix: Array, limits: Array, axis: int) -> float:
+    from scipy.optimize import linprog  # half a second, only where the authority is asked for
+
     others = np.delete(matrix, axis, axis=0)
     bounds = list(zip(-limits, limits, strict=True))
     found = linprog(-matrix[axis], A_eq=others, b_eq=np.zeros(5), bounds=bounds, method="highs")

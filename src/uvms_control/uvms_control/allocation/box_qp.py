@@ -9,8 +9,9 @@ once the minimum is reached frees the held variable with the most negative multi
 linearly independent, so that a freed variable always moves and the objective strictly falls: no
 set of held variables comes back, and the method ends after finitely many steps.
 
-Own code beside daqp and quadprog because it is several times as fast on problems of this size: the
-benchmark `allocation` compares them.
+Own code because compiled kernels can call it, and for its speed: the whole allocation of a wrench
+from Python takes as long as daqp's solution alone (ratio 0.95), 0.67 of quadprog's time and 0.09 of
+that of scipy's bvls (`make bench ARGS=allocation`).
 """
 
 import numpy as np

@@ -25,7 +25,7 @@ _KEPT_S = 7 * 24 * 3600.0  # folders of other sources, for whoever goes back to 
 
 
 def fingerprint(folders: Iterable[Path]) -> str:
-    """Hash of all Python files in these folders that speak of numba or jit."""
+    """Hash of all Python files in these folders that mention numba or jit."""
     digest = hashlib.sha256()
     for folder in folders:
         for path in sorted(folder.rglob("*.py")):

@@ -41,14 +41,23 @@ from uvms_dynamics.kernels.numba_internals.lanes import (
 )
 from uvms_dynamics.kernels.numba_internals.primitives import (
     fabs,
-    item,
     maximum,
     minimum,
-    put_item,
+    read,
     sqrt,
+    write,
     zero_like,
 )
-from uvms_dynamics.kernels.spatial import angular, cross, linear, load6, minus, pair, plus3, store6
+from uvms_dynamics.kernels.spatial import (
+    add_vectors,
+    angular,
+    cross,
+    linear,
+    load6,
+    minus,
+    pair,
+    store_spatial,
+)
 
 _LOWEST, _HIGHEST = 2.0**FIRST_OCTAVE, 2.0**LAST_OCTAVE
 _SHIFT = np.int64(52 - PER_OCTAVE_BITS)  # a float64 has 52 bits of mantissa below its exponent
@@ -57,59 +66,59 @@ SLOT_NUMBERS = 12  # of a cylinder: velocity of its link, then force on it
 
 
 def gather_drag(model, work, i, v):
-    """Drag on link i for its velocity: what it must overcome is in FORCE after `apply_drag`."""
+    """Note the velocity of link i, whose drag `apply_drag` adds to FORCE."""
 
 
 def apply_drag(model, work):
-    """Add what all links must overcome to their FORCE."""
+    """Add the drag of all links, as a resistance, to their FORCE."""
 
 
 @overload(gather_drag, jit_options=OPTIONS)
-def _meet_water(model, work, i, v):
+def _gather_drag(model, work, i, v):
     if isinstance(work, LaneArrayType):
-        return _meet_water_now
-    return _leave_velocity
+        return _add_drag
+    return _store_velocity
 
 
 @overload(apply_drag, jit_options=OPTIONS)
-def _resist(model, work):
+def _apply_drag(model, work):
     if isinstance(work, LaneArrayType):
         return lambda model, work: None
-    return _resist_by_groups
+    return _apply_drag_by_groups
 
 
-def _meet_water_now(model, work, i, v):
+def _add_drag(model, work, i, v):
     strips, block = np.int64(model[HULL, STRIPS]), np.int64(model[HULL, CYLINDERS])
     stride = LANES * (STRIP + 2 * strips)
     force = load6(work, i, FORCE)
     for slot in range(np.int64(model[i, DRAG_BEGIN]), np.int64(model[i, DRAG_END])):
         group, lane = slot // LANES, slot % LANES
         force = minus(force, _cylinder_drag(model, block + group * stride, strips, lane, v))
-    store6(work, i, FORCE, force)
+    store_spatial(work, i, FORCE, force)
 
 
-def _leave_velocity(model, work, i, v):
+def _store_velocity(model, work, i, v):
     for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
         first = _slot(model, slot)
         for k in range(6):
-            put_item(work, first + LANES * k, v[k])
+            write(work, first + LANES * k, v[k])
 
 
-def _resist_by_groups(model, work):
+def _apply_drag_by_groups(model, work):
     strips, block = np.int64(model[HULL, STRIPS]), np.int64(model[HULL, CYLINDERS])
     stride = LANES * (STRIP + 2 * strips)
     n, slots = np.int64(model[HULL, JOINTS]), _slot(model, 0)
     for group in range(np.int64(model[HULL, GROUPS])):
         first = slots + LANES * SLOT_NUMBERS * group
-        v = _six(work, first, None)
+        v = _spatial_in_slot(work, first, None)
         force = _cylinder_drag(model, block + group * stride, strips, None, v)
         for k in range(6):
             put_lanes(work, first + LANES * (6 + k), force[k])
     for i in range(1, n + 1):
         force = load6(work, i, FORCE)
         for slot in range(np.uint64(model[i, DRAG_BEGIN]), np.uint64(model[i, DRAG_END])):
-            force = minus(force, _six(work, _slot(model, slot) + 6 * LANES, 0))
-        store6(work, i, FORCE, force)
+            force = minus(force, _spatial_in_slot(work, _slot(model, slot) + 6 * LANES, 0))
+        store_spatial(work, i, FORCE, force)
 
 
 @inner
@@ -121,15 +130,15 @@ def _slot(model, slot):
 
 
 @inner
-def _six(work, block, lane):
+def _spatial_in_slot(work, block, lane):
     """Motion or force of a slot, or of all eight of a group where lane is None."""
     return (
-        _number(work, block, 0, lane),
-        _number(work, block, 1, lane),
-        _number(work, block, 2, lane),
-        _number(work, block, 3, lane),
-        _number(work, block, 4, lane),
-        _number(work, block, 5, lane),
+        _value(work, block, 0, lane),
+        _value(work, block, 1, lane),
+        _value(work, block, 2, lane),
+        _value(work, block, 3, lane),
+        _value(work, block, 4, lane),
+        _value(work, block, 5, lane),
     )
 
 
@@ -141,14 +150,14 @@ def _cylinder_drag(model, block, strips, lane, v):
     the axis and Re = |u| D / viscosity (section 2.2.1). Along it f = -1/2 rho C_f S |u_a| u_a
     with the wetted surface S: all strips move along the axis alike.
     """
-    center, axis = _three(model, block, CENTER, lane), _three(model, block, AXIS, lane)
-    u = plus3(linear(v), cross(angular(v), center))
+    center, axis = _vector_of(model, block, CENTER, lane), _vector_of(model, block, AXIS, lane)
+    u = add_vectors(linear(v), cross(angular(v), center))
     along = _dot(u, axis)
     u = u[0] - along * axis[0], u[1] - along * axis[1], u[2] - along * axis[2]
     turn = cross(angular(v), axis)
     sum0, sum1, sum2 = _strip_sums(model, block, strips, lane, u, turn)
-    friction = _number(model, block, AXIAL_AREA, lane) * fabs(along) * along
-    reynolds = _number(model, block, AXIAL_REYNOLDS, lane) * fabs(along)
+    friction = _value(model, block, AXIAL_AREA, lane) * fabs(along) * along
+    reynolds = _value(model, block, AXIAL_REYNOLDS, lane) * fabs(along)
     friction *= coefficient(model, np.int64(model[HULL, AXIAL]), reynolds)
     force = (
         -(u[0] * sum0 + turn[0] * sum1 + friction * axis[0]),
@@ -160,21 +169,21 @@ def _cylinder_drag(model, block, strips, lane, v):
         -(u[1] * sum1 + turn[1] * sum2),
         -(u[2] * sum1 + turn[2] * sum2),
     )
-    return pair(force, plus3(cross(center, force), cross(axis, lever)))
+    return pair(force, add_vectors(cross(center, force), cross(axis, lever)))
 
 
 @inner
 def _strip_sums(model, block, strips, lane, u, turn):
-    """Sums of k, s k and s^2 k over the strips at s, each of which resists with -k (u + s turn)."""
+    """Sums of k, s k and s^2 k over the strips at s, each with the force -k (u + s turn)."""
     slip, mixed, spin = _dot(u, u), 2.0 * _dot(u, turn), _dot(turn, turn)
     first, per_speed = (
         np.int64(model[HULL, CROSS_FLOW]),
-        _number(model, block, CROSS_REYNOLDS, lane),
+        _value(model, block, CROSS_REYNOLDS, lane),
     )
     sum0, sum1, sum2 = zero_like(u[0]), zero_like(u[0]), zero_like(u[0])
     for strip in range(strips):
-        s = _number(model, block, STRIP + 2 * strip, lane)
-        area = _number(model, block, STRIP + 2 * strip + 1, lane)
+        s = _value(model, block, STRIP + 2 * strip, lane)
+        area = _value(model, block, STRIP + 2 * strip + 1, lane)
         speed = sqrt(maximum(slip + s * (mixed + s * spin), 0.0))  # rounding may go below zero
         k = area * (coefficient(model, first, per_speed * speed) * speed)
         sum0, sum1, sum2 = sum0 + k, sum1 + s * k, sum2 + s * (s * k)
@@ -187,24 +196,24 @@ def _dot(a, b):
 
 
 @inner
-def _three(model, block, k, lane):
+def _vector_of(model, block, k, lane):
     """A vector of a cylinder."""
     return (
-        _number(model, block, k, lane),
-        _number(model, block, k + 1, lane),
-        _number(model, block, k + 2, lane),
+        _value(model, block, k, lane),
+        _value(model, block, k + 1, lane),
+        _value(model, block, k + 2, lane),
     )
 
 
-def _number(table, block, k, lane):
+def _value(table, block, k, lane):
     """Number k of a cylinder or slot, or of all eight of a group where lane is None."""
 
 
-@overload(_number, jit_options=OPTIONS)
-def _number_of(table, block, k, lane):
+@overload(_value, jit_options=OPTIONS)
+def _value_overload(table, block, k, lane):
     if isinstance(lane, types.NoneType):
         return lambda table, block, k, lane: lanes_at(table, block + LANES * k)
-    return lambda table, block, k, lane: item(table, block + LANES * k + lane)
+    return lambda table, block, k, lane: read(table, block + LANES * k + lane)
 
 
 @inner
@@ -216,11 +225,11 @@ def coefficient(model, first, reynolds):
 
 
 def _cell_line(model, first, reynolds):
-    """The line (a, b) of the cell in which a Reynolds number lies: its highest bits say which."""
+    """The line (a, b) of the cell in which a Reynolds number lies: by its highest bits."""
 
 
 @overload(_cell_line, jit_options=OPTIONS)
-def _cell_line_of(model, first, reynolds):
+def _cell_line_overload(model, first, reynolds):
     if isinstance(reynolds, LanesType):
         return _cell_lines
     return _one_cell_line
@@ -228,7 +237,7 @@ def _cell_line_of(model, first, reynolds):
 
 def _one_cell_line(model, first, reynolds):
     cell = first + 2 * ((np.float64(reynolds).view(np.int64) >> _SHIFT) - _BEFORE)
-    return item(model, cell), item(model, cell + 1)
+    return read(model, cell), read(model, cell + 1)
 
 
 def _cell_lines(model, first, reynolds):

@@ -47,8 +47,8 @@ from uvms_dynamics.kernels.spatial import (
     minus,
     motion_to_child,
     plus,
-    six,
-    store6,
+    spatial_at,
+    store_spatial,
     to_child,
 )
 
@@ -75,8 +75,8 @@ def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     """`forward_dynamics` without allocation: scratch in work, result in out (6+n,)."""
     n = q.shape[0]
     down = down_in_body(quat[0], quat[1], quat[2], quat[3])
-    nu = six(nu_r, FIRST)
-    wrench = six(tau, FIRST)
+    nu = spatial_at(nu_r, FIRST)
+    wrench = spatial_at(tau, FIRST)
     for i in range(1, n + 1):
         set_angle(model, work, i, q[i - 1])
         work[i, RATE], work[i, TORQUE] = q_dot[i - 1], tau[5 + i]
@@ -93,17 +93,17 @@ def accelerate(model, work, n, down, nu_r, wrench):
     wrench on the hull are given in the body frame, as is the result.
     """
     v, k = into_hull(model, nu_r), to_hull(model, down)
-    none = _zeros(v[0])
+    zero = _zeros(v[0])
     bias = minus(hull_bias_force(model, v, k), into_hull(model, wrench))
     for i in range(1, n + 1):  # outward: velocities and bias forces
         rate = work[i, RATE]
         v, k = link_velocity(model, work, i, v, rate), to_child(model, work, i, k)
         _store4(work, i, VELOCITY_PRODUCT, velocity_product(v, rate))
-        set_link_force(model, work, i, v, k, none)
+        set_link_force(model, work, i, v, k, zero)
     apply_drag(model, work)
     inertia, force = _gather(model, work, n, v)
     inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)
-    a = solve_inertia(inertia, minus(_opposite(bias), force))
+    a = solve_inertia(inertia, minus(_negated(bias), force))
     result = into_body(model, a)
     for i in range(1, n + 1):  # outward: accelerations
         a = _accelerate_joint(model, work, i, a)
@@ -122,7 +122,7 @@ def _gather(model, work, n, like):
         u = axis_force(inertia)
         inverse = 1.0 / (u[5] + model[i, ROTOR])
         rest = work[i, TORQUE] - force[5]
-        store6(work, i, AXIS_FORCE, u)
+        store_spatial(work, i, AXIS_FORCE, u)
         work[i, INVERSE], work[i, TORQUE] = inverse, rest
         inertia = articulated_inertia(inertia, u, inverse)
         force = plus(force, _times_velocity_product(inertia, work, i))
@@ -181,5 +181,5 @@ def _scaled(s, a):
 
 
 @inner
-def _opposite(a):
+def _negated(a):
     return -a[0], -a[1], -a[2], -a[3], -a[4], -a[5]

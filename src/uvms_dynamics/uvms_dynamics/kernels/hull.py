@@ -12,7 +12,7 @@ from uvms_dynamics.kernels.motion import (
     into_body,
     into_hull,
 )
-from uvms_dynamics.kernels.spatial import gyroscopic, plus, six, times
+from uvms_dynamics.kernels.spatial import gyroscopic, plus, spatial_at, times
 
 
 @kernel
@@ -22,7 +22,7 @@ def hull_bias_wrench(model, nu_r):
     nu_r (6,) is the velocity relative to the water, body frame. Section 2.2 of the paper.
     """
     check_motion(nu_r, nu_r)
-    nu = six(nu_r, FIRST)
+    nu = spatial_at(nu_r, FIRST)
     no_weight = (0.0, 0.0, 0.0)
     wrench = into_body(model, hull_bias_force(model, into_hull(model, nu), no_weight))
     out = np.empty(6)
@@ -35,8 +35,8 @@ def hull_bias_wrench(model, nu_r):
 def hull_hydrodynamic_wrench(model, nu_r, nu_r_dot):
     """What the water does TO the hull (6,): -(M_A nu_r_dot + C_A(nu_r) nu_r + D(nu_r) nu_r)."""
     check_motion(nu_r, nu_r_dot)
-    nu = six(nu_r, FIRST)
-    rate = six(nu_r_dot, FIRST)
+    nu = spatial_at(nu_r, FIRST)
+    rate = spatial_at(nu_r_dot, FIRST)
     inertia = load_inertia(model, np.int64(model[HULL, JOINTS]) + 1, ADDED_MASS)
     wrench = plus(times(inertia, rate), plus(gyroscopic(inertia, nu), hull_damping(model, nu)))
     out = np.empty(6)

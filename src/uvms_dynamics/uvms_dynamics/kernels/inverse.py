@@ -26,8 +26,8 @@ from uvms_dynamics.kernels.spatial import (
     load6,
     motion_to_child,
     plus,
-    six,
-    store6,
+    spatial_at,
+    store_spatial,
     times,
     to_child,
 )
@@ -47,7 +47,7 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6 + n)
     down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
-    v, a = into_hull(model, six(nu_r, FIRST)), into_hull(model, six(nu_r_dot, FIRST))
+    v, a = into_hull(model, spatial_at(nu_r, FIRST)), into_hull(model, spatial_at(nu_r_dot, FIRST))
     _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot)
     force = plus(hull_bias_force(model, v, down), times(load_inertia(model, HULL, INERTIA), a))
     force = into_body(model, plus(force, _carry_inward(model, work, n)))
@@ -70,7 +70,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6)
-    v, a = into_hull(model, six(nu_r, FIRST)), into_hull(model, six(nu_r_dot, FIRST))
+    v, a = into_hull(model, spatial_at(nu_r, FIRST)), into_hull(model, spatial_at(nu_r_dot, FIRST))
     no_weight = (0.0, 0.0, 0.0)
     _forces_of_links(model, work, no_weight, v, a, q, q_dot, q_ddot)
     force = into_body(model, _carry_inward(model, work, n))
@@ -100,6 +100,6 @@ def _carry_inward(model, work, n):
     force = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
     for i in range(n, 0, -1):
         force = plus(load6(work, i, FORCE), force)
-        store6(work, i, FORCE, force)
+        store_spatial(work, i, FORCE, force)
         force = force_to_parent(model, work, i, force)
     return force

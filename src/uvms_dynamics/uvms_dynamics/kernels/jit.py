@@ -33,6 +33,9 @@ kernel = _kernel(_CONTRACTED)
 inner = part(**OPTIONS)
 """For parts of a kernel: always inlined, or each call would copy every table of the model."""
 
+shared = part(**_CONTRACTED)
+"""For parts that several places of a kernel call: the compiler chooses what to inline."""
+
 exact_kernel = _kernel(_EXACT)
 """For functions that are called from Python and round every operation."""
 

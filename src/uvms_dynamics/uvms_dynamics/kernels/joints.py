@@ -7,8 +7,8 @@ from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     COULOMB,
     DISSIPATION,
+    INVERSE_WIDTH,
     LOWER,
-    PER_WIDTH,
     STIFFNESS,
     UPPER,
     VISCOUS,
@@ -35,7 +35,7 @@ def joint_passive_torque(model, q, q_dot):
 def passive_torque(model, i, angle, rate):
     """The same of the joint in row i."""
     friction = model[i, VISCOUS] * rate
-    friction += model[i, COULOMB] * hyperbolic_tangent(rate * model[i, PER_WIDTH])
+    friction += model[i, COULOMB] * hyperbolic_tangent(rate * model[i, INVERSE_WIDTH])
     over, under = angle - model[i, UPPER], model[i, LOWER] - angle
     return _stop(model, i, under, -rate) - _stop(model, i, over, rate) - friction
 

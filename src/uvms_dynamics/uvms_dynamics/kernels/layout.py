@@ -41,7 +41,7 @@ JOINT = {
     "ROTOR": 1,  # rotor inertia
     "VISCOUS": 1,  # friction
     "COULOMB": 1,
-    "PER_WIDTH": 1,  # 1 / the rate at which sliding friction sets in
+    "INVERSE_WIDTH": 1,  # 1 / the rate at which sliding friction sets in
     "LOWER": 1,  # end stops
     "UPPER": 1,
     "STIFFNESS": 1,
@@ -50,7 +50,7 @@ JOINT = {
     "DRAG_BEGIN": 1,  # its drag cylinders
     "DRAG_END": 1,
 }
-PLACE, COS_TWIST, SIN_TWIST, OFFSET, ROTOR, VISCOUS, COULOMB, PER_WIDTH, *_rest = _columns(
+PLACE, COS_TWIST, SIN_TWIST, OFFSET, ROTOR, VISCOUS, COULOMB, INVERSE_WIDTH, *_rest = _columns(
     JOINT, _BODY_END
 )
 LOWER, UPPER, STIFFNESS, DISSIPATION, EFFORT, DRAG_BEGIN, DRAG_END = _rest

@@ -30,8 +30,8 @@ def mass_matrix(model, q):
     check_joints(model, q, q, q)
     n = q.shape[0]
     work, matrix = make_workspace(model), np.empty((6 + n, 6 + n))
-    none = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    inertia = none + none + none + (0.0, 0.0, 0.0)
+    zero = (0.0, 0.0, 0.0, 0.0, 0.0, 0.0)
+    inertia = zero + zero + zero + (0.0, 0.0, 0.0)
     for i in range(1, n + 1):
         set_angle(model, work, i, q[i - 1])
     for i in range(n, 0, -1):

@@ -1,4 +1,4 @@
-"""Steps that forward and inverse dynamics share: what hull and links go through and feel."""
+"""Steps that forward and inverse dynamics share: velocities and forces of hull and links."""
 
 import numpy as np
 
@@ -32,7 +32,7 @@ from uvms_dynamics.kernels.spatial import (
     motion_to_child,
     pair,
     plus,
-    store6,
+    store_spatial,
     turned,
     weight,
 )
@@ -116,23 +116,23 @@ def link_velocity(model, work, i, v, rate):
 def velocity_product(v, rate):
     """V x S q_dot = (v0, v1, w0, w1): acceleration of a link for its turning in a moving frame.
 
-    Parts along z there are none.
+    It has no parts along z.
     """
     return rate * v[1], -rate * v[0], rate * v[4], -rate * v[3]
 
 
 @inner
-def set_link_force(model, work, i, v, down, more):
-    """FORCE of link i: C(v) v less weight and buoyancy, and `more`; its drag follows."""
-    store6(work, i, FORCE, plus(_unresisted(model, i, v, down), more))
+def set_link_force(model, work, i, v, down, other):
+    """FORCE of link i: C(v) v less weight and buoyancy, and another force; its drag follows."""
+    store_spatial(work, i, FORCE, plus(_undamped_force(model, i, v, down), other))
     gather_drag(model, work, i, v)
 
 
 @inner
 def hull_bias_force(model, v, down):
     """C(v) v less weight and buoyancy, with damping, of the hull, in its frame."""
-    resisted = into_hull(model, hull_damping(model, into_body(model, v)))
-    return plus(_unresisted(model, HULL, v, down), resisted)
+    damping = into_hull(model, hull_damping(model, into_body(model, v)))
+    return plus(_undamped_force(model, HULL, v, down), damping)
 
 
 @inner
@@ -150,6 +150,6 @@ def hull_damping(model, nu):
 
 
 @inner
-def _unresisted(model, i, v, down):
+def _undamped_force(model, i, v, down):
     """C(v) v less weight and buoyancy of body i."""
     return minus(gyroscopic(load_inertia(model, i, INERTIA), v), weight(model, i, down))

@@ -43,13 +43,13 @@ def load6(table, i, k):
 
 
 @inner
-def six(a, k):
-    """Motion or force in an array from item k on."""
+def spatial_at(a, k):
+    """Motion or force in an array, from entry k on."""
     return a[k], a[k + 1], a[k + 2], a[k + 3], a[k + 4], a[k + 5]
 
 
 @inner
-def store6(table, i, k, a):
+def store_spatial(table, i, k, a):
     """Write a motion or force to row i from column k on."""
     table[i, k], table[i, k + 1], table[i, k + 2] = a[0], a[1], a[2]
     table[i, k + 3], table[i, k + 4], table[i, k + 5] = a[3], a[4], a[5]
@@ -62,7 +62,7 @@ def cross(a, b):
 
 
 @inner
-def plus3(a, b):
+def add_vectors(a, b):
     """Sum of two vectors."""
     return a[0] + b[0], a[1] + b[1], a[2] + b[2]
 
@@ -122,7 +122,7 @@ def to_child(model, work, i, a):
 @inner
 def motion_to_child(model, work, i, a):
     """Motion of the parent seen from frame i: (R^T (v + w x p), R^T w)."""
-    moved = plus3(linear(a), cross(angular(a), load3(model, i, PLACE)))
+    moved = add_vectors(linear(a), cross(angular(a), load3(model, i, PLACE)))
     return pair(to_child(model, work, i, moved), to_child(model, work, i, angular(a)))
 
 
@@ -131,7 +131,7 @@ def force_to_parent(model, work, i, a):
     """Force on frame i about the parent's origin: (R f, R n + p x R f)."""
     f = to_parent(model, work, i, linear(a))
     n = to_parent(model, work, i, angular(a))
-    return pair(f, plus3(n, cross(load3(model, i, PLACE), f)))
+    return pair(f, add_vectors(n, cross(load3(model, i, PLACE), f)))
 
 
 @inner
@@ -160,7 +160,7 @@ def gyroscopic(inertia, a):
     """
     momentum = times(inertia, a)
     p, h, v, w = linear(momentum), angular(momentum), linear(a), angular(a)
-    return pair(cross(w, p), plus3(cross(w, h), cross(v, p)))
+    return pair(cross(w, p), add_vectors(cross(w, h), cross(v, p)))
 
 
 @inner

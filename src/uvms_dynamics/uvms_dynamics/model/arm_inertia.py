@@ -1,4 +1,4 @@
-"""Added inertia of the arm as its joints feel it: the paper's Fig. 6."""
+"""Added inertia of the arm about its joints: the paper's Fig. 6."""
 
 import numpy as np
 
@@ -13,10 +13,10 @@ def arm_added_inertia(vehicle: Vehicle, q: Array) -> Array:
 
     H_A(q) = sum over the links of J_i^T M_A,i J_i, with M_A,i (6, 6) the added mass of link i about
     its frame's origin and J_i (6, n) from q_dot to that frame's twist in its own axes. Entry (i, i)
-    is what joint i feels of the water that all links from i to the tool carry, the other joints at
-    rest: Fig. 6 shows those of the swing and the shoulder against the elbow angle. Neither rigid
-    bodies nor rotors are in it, nor the hull's added mass; axial added mass, the swing link's own
-    and the links' added rotational inertia are. q (n,) rad.
+    is the inertia about joint i of the water that all links from i to the tool carry, the other
+    joints at rest: Fig. 6 shows those of the swing and the shoulder against the elbow angle.
+    Neither rigid bodies nor rotors are in it, nor the hull's added mass; axial added mass, the
+    swing link's own and the links' added rotational inertia are. q (n,) rad.
 
     The reference vehicle has, at elbow angles of 0, 45, 90 and 135 degrees and all other joints at
     zero, 2.137, 1.787, 1.122, 0.709 kg m^2 about the swing and 1.678, 1.247, 0.546, 0.328 about the

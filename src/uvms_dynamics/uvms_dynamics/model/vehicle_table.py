@@ -132,7 +132,7 @@ def _set_joint(row: Array, joint: Joint, mount: _Mount, turn: float) -> None:
     _put(row, layout.OFFSET, [mount.offset + turn])
     _put(row, layout.ROTOR, [joint.rotor_inertia_kg_m2])
     _put(row, layout.VISCOUS, [joint.viscous_friction_nm_s, joint.coulomb_friction_nm])
-    _put(row, layout.PER_WIDTH, [1.0 / math.radians(joint.coulomb_width_deg_s)])
+    _put(row, layout.INVERSE_WIDTH, [1.0 / math.radians(joint.coulomb_width_deg_s)])
     _put(row, layout.LOWER, np.radians([joint.lower_deg, joint.upper_deg]))
     _put(row, layout.STIFFNESS, [joint.stop_stiffness_nm_rad, joint.stop_dissipation_s_rad])
     _put(row, layout.EFFORT, [joint.effort_limit_nm])

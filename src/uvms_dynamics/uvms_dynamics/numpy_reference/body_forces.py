@@ -1,7 +1,7 @@
 """Forces that one body needs for its motion in the water, in plain numpy (section 2.2).
 
 A motion or a force is (6,), linear part first, about the origin of the body's own frame. Rigid
-inertia feels the motion over ground, added mass and drag feel the motion relative to the water.
+inertia depends on the motion over ground, added mass and drag on the motion relative to the water.
 """
 
 from typing import NamedTuple

@@ -1,4 +1,4 @@
-"""Kinematics of vehicle and arm in plain numpy, eq. (1), (10)-(12): the oracle of the kernels."""
+"""Kinematics of vehicle and arm in plain numpy, eq. (1), (10)-(12), to compare kernels with."""
 
 import numpy as np
 

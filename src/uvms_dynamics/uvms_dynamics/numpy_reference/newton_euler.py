@@ -1,8 +1,8 @@
-"""The paper's recursive Newton-Euler dynamics in plain numpy: the oracle of the kernels.
+"""The paper's recursive Newton-Euler dynamics in plain numpy, for comparison with the kernels.
 
 Written as section 2.2 states it, M_RB nu_dot + C_RB nu + M_A nu_r_dot + C_A nu_r + D nu_r + g,
 over ground and with the current as an argument, body by body in the distal DH frames. The kernels
-do the same in one moving frame with one inertia per body; the tests hold both against each other.
+do the same in one moving frame with one inertia per body; tests compare the two.
 """
 
 import numpy as np

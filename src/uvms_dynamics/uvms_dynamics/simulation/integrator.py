@@ -24,7 +24,7 @@ from uvms_dynamics.kernels.motion import (
     set_angle,
 )
 from uvms_dynamics.kernels.numba_internals.primitives import sqrt
-from uvms_dynamics.kernels.spatial import load6, plus, six, store6
+from uvms_dynamics.kernels.spatial import load6, plus, spatial_at, store_spatial
 from uvms_dynamics.model.vehicle_table import Model, build_model
 from uvms_dynamics.simulation.tether import load_wrench, tether_load
 from uvms_dynamics.simulation.thrusters import Thrusters, build_thrusters, thrust_rate
@@ -140,7 +140,7 @@ def finish_step(
 def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
     """Row k of out: the derivative of the state x under these commands."""
     a, b, c, d = _unit_quaternion(x)
-    nu_r = six(x, VELOCITY)
+    nu_r = spatial_at(x, VELOCITY)
     rates = pose_rates(nu_r, a, b, c, d)
     for i in range(3):  # over ground: the water carries it along
         out[k, POSITION + i] = rates[i] + current[i]
@@ -156,7 +156,7 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
     wrench = plus(wrench, load_wrench(tether_load(model, n, x[DEPTH]), down))
     nu_r_dot = accelerate(model, work, n, down, nu_r, wrench)
-    store6(out, k, VELOCITY, nu_r_dot)
+    store_spatial(out, k, VELOCITY, nu_r_dot)
     for i in range(1, n + 1):
         out[k, JOINTS + n + i - 1] = work[i, RATE]
     for i in range(m):

@@ -16,7 +16,7 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels import inverse_dynamics, mass_matrix
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.motion import down_in_body
-from uvms_dynamics.kernels.spatial import six
+from uvms_dynamics.kernels.spatial import spatial_at
 from uvms_dynamics.model.vehicle_table import Model
 from uvms_dynamics.simulation.integrator import DEPTH, VELOCITY, pose_rates
 from uvms_dynamics.simulation.tether import load_wrench, tether_load
@@ -97,7 +97,7 @@ def _integrate(model, loads, fading_time, inverse, motion, states):
             if k > 0:
                 trial += (h if k == 3 else 0.5 * h) * slope[k - 1]
             trial[3:7] /= np.sqrt(np.sum(trial[3:7] ** 2))
-            rates = pose_rates(six(trial, VELOCITY), trial[3], trial[4], trial[5], trial[6])
+            rates = pose_rates(spatial_at(trial, VELOCITY), trial[3], trial[4], trial[5], trial[6])
             for i in range(7):
                 slope[k, i] = rates[i]
             at = t + 0.5 * h * ((k + 1) // 2)

@@ -1,10 +1,11 @@
 """The only code that rests on numba's internals, which may change with any of its versions.
 
-`parts` subclasses numba's dispatcher; `lanes` defines a type with its data model, typing, casts and
-lowering; `primitives` and `lanes` write LLVM instructions with llvmlite; `compilations` listens to
-numba's events. What they use: `numba.extending`, `numba.core.registry.CPUDispatcher`, and of
-`numba.core` also `cgutils`, `datamodel`, `event`, `imputils`, `typeconv`, `types` and
-`typing.templates`; `llvmlite.ir`. No other module of the project imports `numba.core` or llvmlite.
+`parts` subclasses numba's dispatcher, compiler and code library; `lanes` defines a type with its
+data model, typing, casts and lowering; `primitives` and `lanes` write LLVM instructions with
+llvmlite; `compilations` listens to numba's events. What they use: `numba.extending`, of
+`numba.core` `cgutils`, `codegen.JITCodeLibrary`, `compiler.Compiler`, `datamodel`, `event`,
+`imputils`, `registry.CPUDispatcher`, `typeconv`, `types` and `typing.templates`; `llvmlite.ir`.
+No other module of the project imports `numba.core` or llvmlite.
 
 Tried with numba 0.68.1 and llvmlite 0.50.0. Before SUPPORTED and the bounds in setup.py are
 widened, run the tests of uvms_dynamics with the new version, test_arithmetic above all.

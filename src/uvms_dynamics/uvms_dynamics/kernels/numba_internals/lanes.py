@@ -1,9 +1,9 @@
 """Eight numbers in the place of one: a numba type, so that one source serves both.
 
 A kernel that is called with `Lanes` works on eight independent simulations at once: + - * / and the
-functions of `primitives` act lane by lane, and numbers beside them stand for all eight. LLVM maps
-the eight to whatever vectors the processor has. Tables of lanes are arrays with a last axis of 8,
-seen through `lane_vector` (k, 8) and `lane_table` (i, k, 8), whose items are lanes.
+functions of `primitives` act lane by lane, and numbers beside them are broadcast to all eight. LLVM
+maps the eight to whatever vectors the processor has. Tables of lanes are arrays with a last axis of
+8, seen through `lane_vector` (k, 8) and `lane_table` (i, k, 8), whose items are lanes.
 """
 
 import operator
@@ -28,7 +28,7 @@ _ALIGNMENT = 8  # bytes; all that numpy promises of a row of numbers
 
 
 class LanesType(types.Type):
-    """Eight float64; a number where lanes are wanted stands for all eight."""
+    """Eight float64; a number where lanes are expected is broadcast to all eight."""
 
     def __init__(self) -> None:
         super().__init__("lanes")

@@ -1,6 +1,6 @@
-"""What the kernels need besides + - * /, of one number or of eight lanes alike.
+"""What the kernels need besides + - * /, for one number or for eight lanes.
 
-Each is one or two instructions of LLVM, which take a vector as they take a number.
+Each is one or two instructions of LLVM, for a vector as for a scalar.
 """
 
 from collections.abc import Callable
@@ -79,13 +79,13 @@ def copysign(_context, x, y):
 
 @intrinsic
 def maximum(_context, x, y):
-    """The larger of two; y where x is no number."""
+    """The larger of two; y where x is NaN."""
     return _generic((x, y), _select(">"))
 
 
 @intrinsic
 def minimum(_context, x, y):
-    """The smaller of two; y where x is no number."""
+    """The smaller of two; y where x is NaN."""
     return _generic((x, y), _select("<"))
 
 
@@ -110,7 +110,7 @@ def power_of_two(_context, k):
 
 
 @intrinsic
-def item(_context, table, k):
+def read(_context, table, k):
     """Number k of a contiguous table, counted through its rows."""
     if not is_table(table):
         return None
@@ -123,7 +123,7 @@ def item(_context, table, k):
 
 
 @intrinsic
-def put_item(_context, table, k, number):
+def write(_context, table, k, number):
     """Write number k of a contiguous table, counted through its rows."""
     if not is_table(table):
         return None

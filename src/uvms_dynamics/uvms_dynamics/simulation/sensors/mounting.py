@@ -7,7 +7,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_dynamics.kernels.spatial import cross, plus3
+from uvms_dynamics.kernels.spatial import add_vectors, cross
 from uvms_dynamics.simulation.integrator import QUATERNION, VELOCITY
 
 PLACE = slice(0, 3)
@@ -46,9 +46,9 @@ def at_lever(states, rates, rows, current, lever, gravity):
         rotation = quat_to_matrix(x[QUATERNION:VELOCITY])
         v_r = (x[VELOCITY], x[VELOCITY + 1], x[VELOCITY + 2])
         turn = (x[VELOCITY + 3], x[VELOCITY + 4], x[VELOCITY + 5])
-        speed = plus3(v_r, cross(turn, arm))
+        speed = add_vectors(v_r, cross(turn, arm))
         turn_dot = (dx[VELOCITY + 3], dx[VELOCITY + 4], dx[VELOCITY + 5])
-        force = plus3(cross(turn, speed), cross(turn_dot, arm))
+        force = add_vectors(cross(turn, speed), cross(turn_dot, arm))
         for i in range(3):
             place, drift = x[i], 0.0
             for j in range(3):
