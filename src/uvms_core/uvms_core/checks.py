@@ -29,9 +29,10 @@ Names = Mapping[str, Sequence[str]]
 
 def trust(signal: S) -> S:
     """The signal, marked as checked; for those who have checked what it is made of."""
-    marks = getattr(signal, "__dict__", None)
-    if marks is not None:
-        marks[_MARK] = True
+    try:
+        signal.__dict__[_MARK] = True
+    except AttributeError:  # the clock's stamp is a plain int
+        pass
     return signal
 
 
@@ -47,16 +48,18 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     Raises:
         SignalError: a field has a wrong type or shape, is not finite or not of unit length.
     """
-    kind: Any = type(signal)
-    fields, sized = _fields(kind)
-    if _MARK not in getattr(signal, "__dict__", ()):
+    checked = _MARK in getattr(signal, "__dict__", ())
+    if checked and not names:
+        return
+    fields, sized = _fields(type(signal))
+    if not checked:
         sizes = {letter: len(each) for letter, each in names.items()} if names else {}
         for field, rule in fields:
             value = getattr(signal, field)
             if not _is_good(value, rule, sizes):
                 _explain(f"{name}.{field}", value, rule, sizes, names, signal)
         trust(signal)
-    elif names:
+    else:
         sizes = {letter: len(each) for letter, each in names.items()}
         for field, rule in sized:
             value = getattr(signal, field)

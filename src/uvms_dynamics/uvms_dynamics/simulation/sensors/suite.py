@@ -4,7 +4,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from uvms_core import registry
+from uvms_core import checks, registry
 from uvms_core.sensors import INERTIAL, sensor_types
 from uvms_core.signals import (
     Array,
@@ -74,9 +74,16 @@ class SensorSuite:
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on the trajectory, and the encoders at its end."""
         return SensorFrame(
-            {name: model.sample(trajectory) for name, model in self._models.items()},
+            {name: _trusted(model.sample(trajectory)) for name, model in self._models.items()},
             self._encoders.sample(trajectory.stamps[-1], q, q_dot, effort),
         )
+
+
+def _trusted(samples: tuple[Any, ...]) -> tuple[Any, ...]:
+    """Samples of a trajectory that the plant has found finite need no check."""
+    for sample in samples:
+        checks.trust(sample)
+    return samples
 
 
 def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
