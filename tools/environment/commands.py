@@ -69,15 +69,19 @@ def _explain(command, code, last, log):
 
 
 class Background:
-    """A command beside the stages; `line` is the last that it printed."""
+    """A command beside the stages; `lines` is what it has printed."""
 
     def __init__(self, command, env, log):
-        self.line, self.fault, self.seconds = "", None, 0.0
+        self.lines, self.fault = [], None
         self._process = None
         self._arguments = (command, env, log, self._show)
         self._thread = threading.Thread(target=self._run)
-        self._begun = time.monotonic()
         self._thread.start()
+
+    @property
+    def line(self):
+        """The last line, or nothing yet."""
+        return self.lines[-1] if self.lines else ""
 
     @property
     def running(self):
@@ -99,13 +103,12 @@ class Background:
             execute(*self._arguments, started=self._started)
         except SetupError as fault:
             self.fault = fault
-        self.seconds = time.monotonic() - self._begun
 
     def _started(self, process):
         self._process = process
 
     def _show(self, line):
-        self.line = line
+        self.lines.append(line)
 
 
 class Stage:
@@ -145,11 +148,12 @@ class Stage:
 
     def watch(self, background):
         """Show what it prints until it ends; every line where there is no terminal."""
-        while background.running:
-            if background.line != self._line and not self._live:
-                self._print("[set-up] %s" % background.line)
-            self._line = background.line
+        shown = len(background.lines)
+        while background.running or shown < len(background.lines):
             background.wait(0.2)
+            for line in background.lines[shown:] if not self._live else ():
+                self._print("[set-up] %s" % line)
+            shown, self._line = len(background.lines), background.line
 
     def _show(self, line):
         self._line = line
