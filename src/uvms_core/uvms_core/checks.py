@@ -51,7 +51,8 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     checked = _MARK in getattr(signal, "__dict__", ())
     if checked and not names:
         return
-    fields, sized = _fields(type(signal))
+    kind: Any = type(signal)
+    fields, sized = _fields(kind)
     if not checked:
         sizes = {letter: len(each) for letter, each in names.items()} if names else {}
         for field, rule in fields:
