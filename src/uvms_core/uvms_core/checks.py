@@ -17,7 +17,7 @@ from uvms_core.errors import SignalError
 from uvms_core.signals import Array, OnlyIf, Shape, to_nanoseconds
 
 QUATERNION_TOLERANCE = 1e-3
-"""A quaternion from outside may be off unit length by this much; a zero one is rubbish."""
+"""A quaternion from outside may be off unit length by this much; a zero one is invalid."""
 MAX_AGE_S = 0.5
 """Oldest joint state or disturbance that control works with, s: a planner step."""
 

@@ -14,10 +14,10 @@ class Tether(Part):
 
     At depth d of the body origin the tether pulls with the weight w (d - d0) down, which has the
     first moment m (d - d0): with k down in body axes it acts as (w k, m x k) (d - d0). Farther than
-    `linear_within_m` from d0 the pull stays as it is there: what was measured over a metre of depth
-    tells nothing of ten. The plant,
-    `uvms validate` and `uvms identify` count it. Planner, observer and controller do not know of
-    it: to them it is a disturbance, `external` in the plant's true disturbance.
+    `linear_within_m` from d0 the pull stays as it is there: a slope that was measured over a metre
+    of depth must not be extrapolated to ten. The plant, `uvms validate` and `uvms identify` include
+    it. Planner, observer and controller do not know of it: to them it is a disturbance, `external`
+    in the plant's true disturbance.
     """
 
     reference_depth_m: float = Field(description="depth d0 at which the tether does not pull, m")
