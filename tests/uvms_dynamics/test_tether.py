@@ -117,11 +117,13 @@ def test_a_tether_of_no_weight_changes_not_one_bit():
     assert np.array_equal(plain, roped)
 
 
-def test_the_plant_of_the_real_vehicle_feels_it_and_reports_it_as_external():
-    vehicle, config = real_vehicle(), PlantConfig(initial_position_m=(0.0, 0.0, 4.6))
+@pytest.mark.parametrize(("depth", "below"), [(1.0, 0.4), (4.6, 0.6), (0.0, -0.6)])
+def test_the_plant_of_the_real_vehicle_feels_it_and_reports_it_as_external(depth, below):
+    """In proportion to the depth below 0.6 m, and cut 0.6 m from there."""
+    vehicle, config = real_vehicle(), PlantConfig(initial_position_m=(0.0, 0.0, depth))
     truth = Plant(vehicle, config, seed=1).truth()
-    expected = np.zeros(6)  # 0.0559 N m/m forward, 4 m below the reference depth: bow down
-    expected[3:] = np.cross([0.0559 * 4.0, 0.0, 0.0], [0.0, 0.0, 1.0])
+    expected = np.zeros(6)  # 0.0559 N m/m forward: bow down below the reference depth
+    expected[3:] = np.cross([0.0559 * below, 0.0, 0.0], [0.0, 0.0, 1.0])
     np.testing.assert_allclose(truth.disturbance.external, expected, atol=1e-12)
     plain = Plant(without_tether(vehicle), config, seed=1).truth()
     np.testing.assert_array_equal(plain.disturbance.external, np.zeros(6))

@@ -32,7 +32,7 @@ class Recorder:
         write: takes (topic, type, qos in YAML, stamp in ns, CDR bytes), as `LogWriter.write`.
     """
 
-    def __init__(self, node: Node, write: Write, recorded: Sequence[Topic]) -> None:
+    def __init__(self, node: Node, write: Write, recorded: Sequence[Topic] = topics.ALL) -> None:
         self._write = write
         self.stamp = 0
         self.on_clock: Callable[[], None] = lambda: None
