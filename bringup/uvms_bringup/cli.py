@@ -4,6 +4,7 @@ A command is an entry point of the group `uvms.commands` (`uvms_core.command.Com
 """
 
 import argparse
+import os
 import shlex
 import sys
 from collections.abc import Sequence
@@ -30,16 +31,26 @@ FIRST = ("run", "simulate", "replay", "report")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the project's own errors end in one clear message and code 2."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
+    _search_working_directory()
     try:
         options = parser(_chosen(arguments)).parse_args(arguments)
         options.command_line = "uvms " + shlex.join(arguments)
         return options.run_command(options)
+    except BrokenPipeError:  # the reader of the output has gone, as in `uvms fields | head`
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 141
     except (UvmsError, OSError) as fault:  # OSError: the disk is full, a folder may not be written
         print(f"error: {fault}", file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
+
+
+def _search_working_directory() -> None:
+    """Find `my_module:MyClass` in the working directory, as `python -m` does for the nodes."""
+    if os.getcwd() not in sys.path:
+        sys.path.append(os.getcwd())
 
 
 def parser(chosen: str | None = None) -> argparse.ArgumentParser:

@@ -63,3 +63,20 @@ def test_signals_go_from_part_to_part_within_a_tick():
     process.deliver(a, SimpleNamespace(stamp=0, value=1))
     done = [(role, outputs[0][1].value) for role, outputs in process.tick(0)]
     assert done == [("first", 2), ("second", 3)]
+
+
+class Absent(Relay):
+    """Has a mistake."""
+
+    def step(self, tick: Tick):
+        wrench, torques = None
+        return wrench, torques
+
+
+def test_a_step_that_fails_is_named_with_its_place():
+    a, b = topics.DISTURBANCE, topics.WRENCH_COMMAND
+    process = InProcess({"controller": Absent(a, b, Same())})
+    process.deliver(a, SimpleNamespace(stamp=50_000_000, value=1))
+    reason = r"controller: its step failed at t = 0.05 s: TypeError: .*test_parts\.py:\d+"
+    with pytest.raises(PluginError, match=reason):
+        list(process.tick(50_000_000))

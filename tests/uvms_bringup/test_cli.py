@@ -329,3 +329,24 @@ def test_a_command_that_cannot_be_imported_leaves_the_others_alone(capsys, insta
     assert "dive (not available: command 'dive': cannot import own_missing:COMMAND" in text
     assert error_of(capsys, "report", "no.mcap").startswith("log no.mcap")
     assert error_of(capsys, "dive").startswith("command 'dive': cannot import own_missing")
+
+
+def test_a_class_in_the_working_directory_is_found_and_its_mistake_is_one_line(capsys):
+    """The folder of the test is the working directory; only there is a module `at_hand`."""
+    Path("at_hand.py").write_text(
+        "class Law:\n"
+        "    def __init__(self, vehicle, config): pass\n"
+        "    def step(self, odometry, joints, disturbance, reference): return None\n",
+        encoding="utf-8",
+    )
+    assert main(["simulate", "hover", "--set", "control.law=at_hand:Law", "--output", "o"]) == 2
+    err = capsys.readouterr().err
+    assert "error: controller: its step failed at t = 0 s: TypeError: " in err
+    assert "Traceback" not in err
+
+
+def test_a_reader_that_leaves_early_ends_the_command_quietly():
+    command = f"{sys.executable} -m uvms_bringup.cli fields | head -n 1"
+    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=True)
+    assert done.stderr == ""
+    assert len(done.stdout.splitlines()) == 1

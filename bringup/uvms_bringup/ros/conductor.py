@@ -137,7 +137,7 @@ class Conductor(Node):
             spinner,
             lambda: not self._roll_call.poll(),
             math.inf if self._patient else START_PATIENCE_S,
-            lambda: _missing(self._roll_call.poll()),
+            lambda: _missing(self._roll_call.poll(), self._foreign),
         )
         if self._foreign:  # nobody knows whether these have found their listeners
             settled = time.monotonic() + FOREIGN_SETTLE_S
@@ -242,7 +242,9 @@ class Conductor(Node):
         return text
 
 
-def _missing(lacks: dict[str, str]) -> str:
-    """Who is missing; a node that is not up is the reason why the others lack its topics."""
-    absent = {node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER)}
+def _missing(lacks: dict[str, str], foreign: Collection[str] = ()) -> str:
+    """Who is missing; a node that is not there is the reason why the others lack its topics."""
+    absent = {
+        node: lack for node, lack in lacks.items() if lack in (NOT_UP, NO_ANSWER) or node in foreign
+    }
     return "; ".join(f"{node}: {lack}" for node, lack in (absent or lacks).items())

@@ -1,6 +1,7 @@
 """`uvms run`: the nodes on a real ROS 2 graph, conducted and recorded from first to last tick."""
 
 import os
+import sys
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -128,6 +129,7 @@ def _separate(
     parameters: Parameters, cast: Cast, folder: Path, values: dict[str, str]
 ) -> Iterator[Group]:
     processes = NodeProcesses(folder / "logs", values)
+    print(f"starting {len(parameters)} nodes ...", file=sys.stderr, flush=True)
     try:
         for role, own in parameters.items():
             file = write_parameter_file(folder / "parameters" / f"{role}.yaml", role, own)

@@ -49,7 +49,8 @@ def _explain_one(item, what: str, model: type[BaseModel]) -> str:
     if item["type"] == "missing":
         return line
     got = repr(item["input"])
-    return f"{line} (got {got})" if len(got) <= _LONGEST_ECHO else line
+    is_section = isinstance(item["input"], dict | BaseModel)
+    return line if is_section or len(got) > _LONGEST_ECHO else f"{line} (got {got})"
 
 
 def _names_at(model: type[BaseModel], path: tuple) -> list[str]:

@@ -5,12 +5,14 @@ waits by that declaration, and the in-process loop calls the parts in the order 
 it, so that both compute the same.
 """
 
+import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
 from uvms_core.errors import PluginError, UvmsError
+from uvms_core.signals import to_seconds
 from uvms_core.tick_gate import Input, Previous, Tick
 from uvms_core.topics import Topic
 
@@ -81,10 +83,29 @@ class InProcess:
             if stamp % part.every:
                 continue
             inputs = {name: rule.take(stamp) for name, rule in rules}
-            outputs = list(part.step(Tick(stamp, inputs)))
+            outputs = run_step(role, part, Tick(stamp, inputs))
             for topic, signal in outputs:
                 self.deliver(topic, signal)
             yield role, outputs
+
+
+def run_step(role: str, part: Part, tick: Tick) -> list[Output]:
+    """The outputs of a part's tick.
+
+    Raises:
+        UvmsError: an input cannot be used; the part keeps its last good state.
+        PluginError: its step fails in any other way: what it is made of has a mistake.
+    """
+    try:
+        return list(part.step(tick))
+    except UvmsError:
+        raise
+    except Exception as fault:  # a class of the user's may raise anything
+        where = traceback.extract_tb(fault.__traceback__)[-1]
+        raise PluginError(
+            f"{role}: its step failed at t = {to_seconds(tick.stamp):g} s:"
+            f" {type(fault).__name__}: {fault} ({where.filename}:{where.lineno})"
+        ) from fault
 
 
 def loop_order(parts: Mapping[str, Part]) -> tuple[str, ...]:

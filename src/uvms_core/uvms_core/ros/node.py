@@ -14,7 +14,7 @@ from uvms_core import diagnostics, topics
 from uvms_core.cdr import codec
 from uvms_core.config import Config
 from uvms_core.diagnostics import Status
-from uvms_core.errors import PlantDiverged, UvmsError
+from uvms_core.errors import PlantDiverged, PluginError, UvmsError
 from uvms_core.messages import from_message, to_message
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.parameters import declare_config
@@ -129,11 +129,11 @@ class UvmsNode(Node):
     def guard(self, action: Callable[[], None]) -> None:
         """Run a step; an error of ours is reported and the node keeps its last good state.
 
-        A plant that diverged has no good state left: that error ends the node.
+        A plant that diverged and a part with a mistake have no good state: that ends the node.
         """
         try:
             action()
-        except PlantDiverged as fault:
+        except (PlantDiverged, PluginError) as fault:
             self.report(self._status.stamp, diagnostics.ERROR, str(fault))
             raise
         except UvmsError as fault:

@@ -4,7 +4,7 @@ import time
 from abc import abstractmethod
 from typing import Any
 
-from uvms_core.part import Part
+from uvms_core.part import Part, run_step
 from uvms_core.ros.node import UvmsNode
 from uvms_core.tick_gate import Tick
 
@@ -26,7 +26,7 @@ class PartNode(UvmsNode):
     def take_tick(self, tick: Tick) -> None:
         """Step the part and publish; samples that it left out are reported."""
         began = time.perf_counter()
-        for topic, signal in self.part.step(tick):
+        for topic, signal in run_step(self.role, self.part, tick):
             self.send(topic, signal)
         self.step_ms = 1e3 * (time.perf_counter() - began)
         self.refuse(tick.stamp, self.part.take_faults())
