@@ -10,14 +10,15 @@ from metrics import Metric, Target
 
 from uvms_bringup.loop import Loop
 from uvms_bringup.scenario import load_scenario
+from uvms_core import topics
 
 PARTS = {
-    "plant": ("step", "sense", "truth"),
-    "navigation": ("step",),
-    "planner": ("step",),
-    "observer": ("step",),
-    "controller": ("step",),
-    "allocator": ("step",),
+    "plant": (lambda loop: loop.plant, ("step", "sense", "truth")),
+    "navigation": (lambda loop: loop.parts[topics.NAVIGATION].filter, ("step_screened",)),
+    "planner": (lambda loop: loop.planner, ("step",)),
+    "observer": (lambda loop: loop.parts[topics.DISTURBANCE_OBSERVER].law, ("step",)),
+    "controller": (lambda loop: loop.parts[topics.CONTROLLER].law, ("step",)),
+    "allocator": (lambda loop: loop.parts[topics.THRUST_ALLOCATOR].method, ("step",)),
 }
 TICKS, WARM = 1200, 100
 
@@ -31,9 +32,9 @@ def measure(full: bool) -> Iterator[Metric]:
     vehicle = scenario.load_vehicle()
     loop = Loop(scenario, vehicle)
     spent: dict[str, float] = defaultdict(float)
-    for part, methods in PARTS.items():
+    for part, (of, methods) in PARTS.items():
         for method in methods:
-            _watch(getattr(loop, part), method, part, spent)
+            _watch(of(loop), method, part, spent)
     rows = []
     for index in range(WARM + TICKS):
         spent.clear()

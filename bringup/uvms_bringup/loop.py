@@ -1,8 +1,10 @@
 """The closed loop in one process, without ROS: the nodes' own parts in the graph's order."""
 
+import gc
 import time
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 from uvms_bringup.scenario import Scenario
@@ -40,7 +42,10 @@ class LoopTick:
 
     def newest(self, topic: topics.Topic) -> Any:
         """The last signal of this tick on a topic; None if there was none."""
-        return next((s for t, s in reversed(self.outputs) if t is topic), None)
+        for each, signal in reversed(self.outputs):
+            if each is topic:
+                return signal
+        return None
 
     @property
     def odometry(self) -> Odometry:
@@ -78,6 +83,16 @@ class LoopTick:
         return self.newest(topics.ALLOCATION)
 
 
+@cache
+def _spare_the_garbage_collector() -> None:
+    """Once: what the libraries have made so far lives for good, and need not be visited again.
+
+    numba's objects are so many that visiting them takes 7 % of a run.
+    """
+    gc.collect()
+    gc.freeze()
+
+
 def make_parts(scenario: Scenario, vehicle: Vehicle) -> dict[str, Part]:
     """The parts of a scenario's loop besides the plant, by role."""
     period = to_nanoseconds(scenario.plant.control_period_s)
@@ -98,6 +113,7 @@ class Loop:
         self.parts = make_parts(scenario, vehicle)
         self._process = InProcess(self.parts)
         self._sensor_topics = in_order_of_publication(vehicle)
+        _spare_the_garbage_collector()
 
     @property
     def planner(self) -> MotionPlanner:

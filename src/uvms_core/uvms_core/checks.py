@@ -22,6 +22,8 @@ MAX_AGE_S = 0.5
 """Oldest joint state or disturbance that control works with, s: a planner step."""
 
 _MARK = "_checked"
+_set = object.__setattr__
+"""Signals are frozen. To touch their `__dict__` would allocate one for each of them."""
 _FLOAT64 = np.dtype(np.float64)
 S = TypeVar("S")
 Names = Mapping[str, Sequence[str]]
@@ -29,11 +31,16 @@ Names = Mapping[str, Sequence[str]]
 
 def trust(signal: S) -> S:
     """The signal, marked as checked; for those who have checked what it is made of."""
-    try:
-        signal.__dict__[_MARK] = True
-    except AttributeError:  # the clock's stamp is a plain int
-        pass
+    if type(signal) is not int:  # as the clock's stamp is
+        _set(signal, _MARK, True)
     return signal
+
+
+def trust_all(signals: tuple[S, ...]) -> tuple[S, ...]:
+    """As `trust`, for several."""
+    for signal in signals:
+        _set(signal, _MARK, True)
+    return signals
 
 
 def check(name: str, signal: Any, **names: Sequence[str]) -> None:
@@ -48,7 +55,7 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     Raises:
         SignalError: a field has a wrong type or shape, is not finite or not of unit length.
     """
-    checked = _MARK in getattr(signal, "__dict__", ())
+    checked = getattr(signal, _MARK, False)
     if checked and not names:
         return
     kind: Any = type(signal)
@@ -64,6 +71,8 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
         sizes = {letter: len(each) for letter, each in names.items()}
         for field, rule in sized:
             value = getattr(signal, field)
+            if value.shape == (sizes.get(str(rule.sizes[0])),):  # the usual case, which is quick
+                continue
             if not _fits(value.shape, rule, sizes):
                 raise _wrong_shape(f"{name}.{field}", value, rule, sizes, names)
 
@@ -124,9 +133,10 @@ def _is_good(value: Any, rule: Any, sizes: dict[str, int]) -> bool:
         return isfinite(value)
     if type(value) is not np.ndarray or value.dtype != _FLOAT64:
         return False
-    if value.shape != rule.sizes and not _fits(value.shape, rule, sizes):
+    shape = value.shape
+    if shape != rule.sizes and not _fits(shape, rule, sizes):
         return False
-    if value.ndim == 1:
+    if len(shape) == 1:
         squared: float = value.dot(value)
         if rule.unit:
             return is_unit(squared)
@@ -163,6 +173,8 @@ def _fits(shape: tuple[int, ...], rule: Shape, sizes: dict[str, int]) -> bool:
     """Whether a shape is as the rule says; a letter stands for the first size, not 0."""
     if len(shape) != len(rule.sizes):
         return False
+    if len(shape) == 1 and isinstance(rule.sizes[0], str):  # the usual case, which is quick
+        return bool(shape[0]) and sizes.setdefault(rule.sizes[0], shape[0]) == shape[0]
     for size, count in zip(rule.sizes, shape, strict=True):
         if isinstance(size, str):
             if not count or sizes.setdefault(size, count) != count:

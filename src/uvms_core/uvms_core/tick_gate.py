@@ -29,6 +29,8 @@ class Input(ABC):
 
     def newest(self, stamp: int) -> Any:
         """The newest value at or before the stamp, or None."""
+        if self._items and self._items[-1][0] <= stamp:  # the usual case, which is quick
+            return self._items[-1][1]
         return next((value for when, value in reversed(self._items) if when <= stamp), None)
 
     @abstractmethod
@@ -41,9 +43,9 @@ class Input(ABC):
 
     def take(self, stamp: int) -> Any:
         """The value for the tick; older ones are dropped."""
-        value = self.newest(stamp)
-        while len(self._items) > 1 and self._items[1][0] <= stamp:
-            self._items.popleft()
+        items, value = self._items, self.newest(stamp)
+        while len(items) > 1 and items[1][0] <= stamp:
+            items.popleft()
         return value
 
 

@@ -43,6 +43,7 @@ class Plant:
     def __init__(self, vehicle: Vehicle, config: PlantConfig, seed: int) -> None:
         check_step(vehicle, config)
         self._vehicle, self._config = vehicle, config
+        self._tethered = vehicle.tether is not None
         self._period = to_nanoseconds(config.control_period_s)
         self._step = to_nanoseconds(config.step_s)
         steps = steps_in(self._period, config, "control_period_s")
@@ -75,7 +76,9 @@ class Plant:
         return PlantTruth(
             true_odometry(self._stamp, state, system.current),
             true_joints(self._stamp, state, self._effort),
-            true_disturbance(self._stamp, system.model, state, self._rate, system.current),
+            true_disturbance(
+                self._stamp, system.model, state, self._rate, system.current, self._tethered
+            ),
             state[JOINTS + 2 * self._vehicle.n_joints :].copy(),
         )
 

@@ -41,7 +41,7 @@ def true_joints(stamp: int, state: Array, effort: Array) -> JointStates:
 
 
 def true_disturbance(
-    stamp: int, model: Model, state: Array, rate: Array, current: Array
+    stamp: int, model: Model, state: Array, rate: Array, current: Array, tethered: bool
 ) -> DisturbanceBudget:
     """What acts on the vehicle besides the thrusters, from the true state and accelerations.
 
@@ -49,16 +49,20 @@ def true_disturbance(
     external: the pull of the tether, and what the current does to the hull, the wrench of the water
     moving as it does less that of still water at the same motion over ground,
     W(nu_r, nu_r_dot) - W(nu, nu_dot), W = -(M_A nu_dot + C_A nu + D nu).
+    `tethered`: whether there is a tether at all.
     """
     n = int(model[HULL, JOINTS_COUNT])
     quat, nu_r, nu_r_dot = state[QUATERNION:VELOCITY], state[VELOCITY:JOINTS], rate[VELOCITY:JOINTS]
     q, q_dot = state[JOINTS : JOINTS + n], state[JOINTS + n : JOINTS + 2 * n]
     q_ddot = rate[JOINTS + n : JOINTS + 2 * n]
+    external = _current_on_hull(model, quat, nu_r, nu_r_dot, current)
+    if tethered:
+        external += _tether_wrench(model, state, n)
     return DisturbanceBudget(
         stamp,
         restoring_wrench(model, quat, q),
         coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot),
-        _current_on_hull(model, quat, nu_r, nu_r_dot, current) + _tether_wrench(model, state, n),
+        external,
     )
 
 

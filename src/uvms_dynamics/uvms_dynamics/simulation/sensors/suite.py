@@ -72,18 +72,14 @@ class SensorSuite:
         self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
-        """Samples on the trajectory, and the encoders at its end."""
+        """Samples on a trajectory that is finite, and those of the encoders at its end."""
         return SensorFrame(
-            {name: _trusted(model.sample(trajectory)) for name, model in self._models.items()},
-            self._encoders.sample(trajectory.stamps[-1], q, q_dot, effort),
+            {
+                name: checks.trust_all(model.sample(trajectory))
+                for name, model in self._models.items()
+            },
+            checks.trust(self._encoders.sample(trajectory.stamps[-1], q, q_dot, effort)),
         )
-
-
-def _trusted(samples: tuple[Any, ...]) -> tuple[Any, ...]:
-    """Samples of a trajectory that the plant has found finite need no check."""
-    for sample in samples:
-        checks.trust(sample)
-    return samples
 
 
 def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
