@@ -87,7 +87,7 @@ class LoopTick:
 def _spare_the_garbage_collector() -> None:
     """Once: what the libraries have made so far lives for good, and need not be visited again.
 
-    numba's objects are so many that visiting them takes 7 % of a run.
+    numba's objects are so many that visiting them again and again slows a run.
     """
     gc.collect()
     gc.freeze()

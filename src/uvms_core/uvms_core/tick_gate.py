@@ -165,13 +165,6 @@ class TickGate:
         self._inputs[name].push(stamp, value)
         return self._release()
 
-    def waiting_for(self) -> tuple[str, ...]:
-        """Names of the inputs that the oldest open tick still lacks."""
-        if not self._open:
-            return (self._trigger,)
-        stamp = self._open[0]
-        return tuple(name for name, item in self._inputs.items() if not self._has(item, stamp))
-
     def _abandon(self) -> None:
         if self._open and self._in_loop:
             self._broken = True
