@@ -61,6 +61,9 @@ def example(kind: type, rng: np.random.Generator) -> Any:
         signals.JointCommand: lambda: signals.JointCommand(t, n(4)),
         signals.ThrusterCommand: lambda: signals.ThrusterCommand(t, n(7)),
         signals.Allocation: lambda: signals.Allocation(t, n(7), n(6), n(6), n(7) > 0.0),
+        signals.AppliedThrust: lambda: signals.AppliedThrust(
+            t, n(7), n(7), stamp(rng), stamp(rng), True, False
+        ),
         signals.PathGoal: lambda: signals.PathGoal(
             np.array([0.0, 0.5, 2.0]), n(3, 3), unit(rng, 3)
         ),

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from random_vehicles import REFERENCE, norm_error, random_motion, random_vehicle
 
+from uvms_core.signals import JointCommand, ThrusterCommand
 from uvms_core.vehicle import vehicle_from_data
 from uvms_dynamics import (
     build_model,
@@ -47,9 +48,8 @@ def run_in_current(current, nu, steps=40):
         initial_joints_deg=(20.0, 30.0, 40.0, 50.0),
     )
     plant = Plant(REFERENCE, config, seed=1)
-    thrust, effort = plant.safe_thrust(), plant.safe_effort()
-    thrust.thrust[:] = [50.0, 10.0, -10.0, 5.0, -5.0, 8.0, 3.0]
-    effort.effort[:] = [3.0, 4.0, 2.0, 0.5]
+    thrust = ThrusterCommand(0, np.array([50.0, 10.0, -10.0, 5.0, -5.0, 8.0, 3.0]))
+    effort = JointCommand(0, np.array([3.0, 4.0, 2.0, 0.5]))
     for _ in range(steps):
         plant.step(thrust, effort)
     return plant.truth()
@@ -93,7 +93,7 @@ def test_truth_says_what_the_current_does_to_the_hull():
 
 def test_no_external_disturbance_in_still_water():
     plant = Plant(REFERENCE, PlantConfig(initial_velocity=(0.5, 0.1, 0, 0, 0.1, 0.2)), seed=1)
-    plant.step(plant.safe_thrust(), plant.safe_effort())
+    plant.step(None, None)
     np.testing.assert_array_equal(plant.truth().disturbance.external, np.zeros(6))
 
 
@@ -110,11 +110,11 @@ def test_truth_budget_explains_the_hulls_motion():
         current_ned_m_s=tuple(CURRENT),
     )
     plant = Plant(sensors_at(REFERENCE, 1.0), config, seed=1)
-    command = plant.safe_thrust()
+    command = ThrusterCommand(0, np.zeros(REFERENCE.n_thrusters))
     command.thrust[0] = 30.0
     truths = []
     for _ in range(40):
-        plant.step(command, plant.safe_effort())
+        plant.step(command, None)
         truths.append(plant.truth())
     before, now, after = truths[-3:]
     nu = now.odometry.nu

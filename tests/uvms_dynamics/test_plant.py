@@ -53,7 +53,7 @@ def test_a_held_arm_floats_level_where_it_is():
     for _ in range(200):
         joints = plant.truth().joints
         effort = 200.0 * (np.radians(REFERENCE.arm.stowed_deg) - joints.position)
-        plant.step(plant.safe_thrust(), JointCommand(plant.stamp, effort - 40.0 * joints.velocity))
+        plant.step(None, JointCommand(plant.stamp, effort - 40.0 * joints.velocity))
     truth = plant.truth()
     np.testing.assert_allclose(truth.odometry.position, (0.0, 0.0, 10.0), atol=0.02)
     np.testing.assert_allclose(np.degrees(quat_to_rpy(truth.odometry.quaternion)), 0.0, atol=0.6)
@@ -123,7 +123,7 @@ def test_truth_belongs_to_its_reader():
 def test_a_command_of_wrong_size_is_refused_and_nothing_happens():
     plant = plant_of()
     with pytest.raises(SignalError) as fault:
-        plant.step(ThrusterCommand(0, np.zeros(3)), plant.safe_effort())
+        plant.step(ThrusterCommand(0, np.zeros(3)), None)
     assert str(fault.value) == (
         "thruster_command.thrust has shape (3,); it must have (7,) for main, side_fore, side_aft,"
         " vertical_fore_port, vertical_fore_starboard, vertical_aft_port, vertical_aft_starboard"
@@ -135,7 +135,7 @@ def test_a_command_that_is_not_finite_is_refused_and_nothing_happens():
     plant = plant_of()
     bad = JointCommand(0, np.array([0.0, np.nan, 0.0, np.inf]))
     with pytest.raises(SignalError) as fault:
-        plant.step(plant.safe_thrust(), bad)
+        plant.step(None, bad)
     assert str(fault.value) == "joint_command.effort[shoulder] is nan; it must be finite"
     assert plant.stamp == 0
     run(plant, 1)

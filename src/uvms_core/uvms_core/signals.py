@@ -203,6 +203,22 @@ class Allocation:
 
 
 @dataclass(frozen=True)
+class AppliedThrust:
+    """What the plant's thrusters do at the stamp, and which commands it used to get there.
+
+    A command that is `safe` came from the plant itself, because none from outside could be used.
+    """
+
+    stamp: int
+    thrust: ByThruster  # N, at the stamp
+    commanded: ByThruster  # N, over the control period that ends at the stamp
+    thruster_command_stamp: int
+    joint_command_stamp: int
+    thruster_safe: bool
+    joint_safe: bool
+
+
+@dataclass(frozen=True)
 class PathGoal:
     """A path for the end effector: positions, with an orientation where the user gives one."""
 

@@ -86,6 +86,9 @@ WRENCH_ACHIEVED = Topic(
     "wrench_achieved", "geometry_msgs/msg/WrenchStamped", signals.Wrench, BODY_FRAME
 )
 ALLOCATION = Topic("allocation", "uvms_msgs/msg/Allocation", signals.Allocation, BODY_FRAME)
+APPLIED_THRUST = Topic(
+    "applied_thrust", "uvms_msgs/msg/AppliedThrust", signals.AppliedThrust, BODY_FRAME
+)
 TRUE_ODOMETRY = Topic(
     "ground_truth/odometry", "nav_msgs/msg/Odometry", signals.Odometry, WORLD_FRAME, BODY_FRAME
 )
@@ -125,6 +128,7 @@ def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:
         THRUSTER_COMMAND,
         WRENCH_ACHIEVED,
         ALLOCATION,
+        APPLIED_THRUST,
         TRUE_ODOMETRY,
         TRUE_JOINT_STATES,
         TRUE_DISTURBANCE,
@@ -157,7 +161,7 @@ def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:
     kinds = tuple(kinds)
     measured = tuple(sensor.topic for sensor in kinds)
     fused = tuple(sensor.topic for sensor in kinds if sensor.navigation)
-    truth = (TRUE_ODOMETRY, TRUE_JOINT_STATES, TRUE_DISTURBANCE)
+    truth = (APPLIED_THRUST, TRUE_ODOMETRY, TRUE_JOINT_STATES, TRUE_DISTURBANCE)
     return {
         PLANT: NodeTopics(
             (THRUSTER_COMMAND, JOINT_COMMAND), (CLOCK, *measured, JOINT_STATES, *truth)

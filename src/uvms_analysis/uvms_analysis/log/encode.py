@@ -7,7 +7,7 @@ from uvms_analysis.log.schema import qos_yaml
 from uvms_analysis.log.writer import LogWriter
 from uvms_core.cdr import Codec, codec
 from uvms_core.messages import to_message
-from uvms_core.signals import Allocation, ThrusterCommand
+from uvms_core.signals import Allocation, AppliedThrust, ThrusterCommand
 from uvms_core.topics import CLOCK, Topic
 
 
@@ -42,5 +42,5 @@ class SignalWriter:
         self._log.write(channel[0], topic.type, channel[1], stamp, channel[2].encode(message))
 
     def _names(self, signal: Any) -> tuple[str, ...]:
-        thrusters = isinstance(signal, ThrusterCommand | Allocation)
+        thrusters = isinstance(signal, ThrusterCommand | Allocation | AppliedThrust)
         return self._thruster_names if thrusters else self._joint_names

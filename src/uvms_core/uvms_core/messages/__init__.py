@@ -26,6 +26,7 @@ _CONVERSIONS: dict[type, Conversion] = {
     signals.JointCommand: Conversion(motion.joint_command_to, motion.joint_command_from),
     signals.ThrusterCommand: Conversion(motion.thruster_command_to, motion.thruster_command_from),
     signals.Allocation: Conversion(motion.allocation_to, motion.allocation_from),
+    signals.AppliedThrust: Conversion(motion.applied_to, motion.applied_from),
     signals.Reference: Conversion(reference.reference_to, reference.reference_from),
     signals.PathGoal: Conversion(actions.path_to, actions.path_from),
     signals.JointGoal: Conversion(actions.joints_to, actions.joints_from),

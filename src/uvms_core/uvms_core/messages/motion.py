@@ -10,6 +10,7 @@ from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.signals import (
     Allocation,
+    AppliedThrust,
     DisturbanceBudget,
     JointCommand,
     JointStates,
@@ -190,4 +191,34 @@ def allocation_from(topic: Topic, msg: Any, names: Sequence[str]) -> Allocation:
         fields.wrench(topic, "achieved", msg.achieved),
         fields.wrench(topic, "residual", msg.residual),
         saturated[index],
+    )
+
+
+def applied_to(topic: Topic, value: AppliedThrust, names: Sequence[str]) -> Plain:
+    """uvms_msgs/AppliedThrust."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "thruster_names": list(names),
+        "thrust": parts.floats(value.thrust),
+        "commanded": parts.floats(value.commanded),
+        "thruster_command_stamp": parts.time(value.thruster_command_stamp),
+        "joint_command_stamp": parts.time(value.joint_command_stamp),
+        "thruster_safe": value.thruster_safe,
+        "joint_safe": value.joint_safe,
+    }
+
+
+def applied_from(topic: Topic, msg: Any, names: Sequence[str]) -> AppliedThrust:
+    """From uvms_msgs/AppliedThrust."""
+    fields.check_frame(topic, msg.header)
+    index = fields.order(topic, "thruster_names", msg.thruster_names, names)
+    count = len(msg.thruster_names)
+    return AppliedThrust(
+        fields.stamp_of(msg.header.stamp),
+        fields.floats(topic, "thrust", msg.thrust, count)[index],
+        fields.floats(topic, "commanded", msg.commanded, count)[index],
+        fields.stamp_of(msg.thruster_command_stamp),
+        fields.stamp_of(msg.joint_command_stamp),
+        bool(msg.thruster_safe),
+        bool(msg.joint_safe),
     )

@@ -165,7 +165,11 @@ class UvmsNode(Node):
 
     def names_of(self, topic: Topic) -> tuple[str, ...]:
         """Names of the topic's values: of thrusters or of joints."""
-        by_thruster = topic in (topics.THRUSTER_COMMAND, topics.ALLOCATION)
+        by_thruster = topic in (
+            topics.THRUSTER_COMMAND,
+            topics.ALLOCATION,
+            topics.APPLIED_THRUST,
+        )
         return self.vehicle.thruster_names if by_thruster else self.vehicle.joint_names
 
     def missing_peers(self) -> list[str]:

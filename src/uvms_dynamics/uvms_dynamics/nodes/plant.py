@@ -141,7 +141,7 @@ class PlantNode(UvmsNode):
             return
         if not self.lockstep:
             self._warn_of_stale()
-        self._plant.step(self._thrust(), self._effort())
+        self._plant.step(*map(self._usable, COMMANDS))
         self._publish_tick()
         self._deadline = self._next_deadline(self._pace.timeout_s)
 
@@ -190,15 +190,9 @@ class PlantNode(UvmsNode):
         allowed = 0 if self.lockstep else to_nanoseconds(self._pace.stale_s)
         return command is None or not 0 <= self._plant.stamp - command.stamp <= allowed
 
-    def _thrust(self) -> ThrusterCommand:
-        if self._stale(topics.THRUSTER_COMMAND.name):
-            return self._plant.safe_thrust()
-        return self._commands[topics.THRUSTER_COMMAND.name]
-
-    def _effort(self) -> JointCommand:
-        if self._stale(topics.JOINT_COMMAND.name):
-            return self._plant.safe_effort()
-        return self._commands[topics.JOINT_COMMAND.name]
+    def _usable(self, name: str) -> Any:
+        """The command to use; None where there is none, which puts the plant into safe state."""
+        return None if self._stale(name) else self._commands[name]
 
     def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         response.success, response.message = (

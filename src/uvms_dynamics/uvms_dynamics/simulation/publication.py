@@ -20,6 +20,7 @@ def plant_outputs(
     last, because its sample starts the tick in the graph.
     """
     yield topics.CLOCK, stamp
+    yield topics.APPLIED_THRUST, truth.applied
     yield topics.TRUE_ODOMETRY, truth.odometry
     yield topics.TRUE_JOINT_STATES, truth.joints
     yield topics.TRUE_DISTURBANCE, truth.disturbance

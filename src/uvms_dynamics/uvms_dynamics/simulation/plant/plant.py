@@ -4,6 +4,7 @@ import numpy as np
 
 from uvms_core import checks
 from uvms_core.signals import (
+    AppliedThrust,
     Array,
     JointCommand,
     ThrusterCommand,
@@ -79,25 +80,23 @@ class Plant:
             true_disturbance(
                 self._stamp, system.model, state, self._rate, system.current, self._tethered
             ),
-            state[JOINTS + 2 * self._vehicle.n_joints :].copy(),
+            self._applied(),
         )
 
-    def safe_thrust(self) -> ThrusterCommand:
-        """The command that the plant uses where none arrives: no thrust."""
-        return ThrusterCommand(self._stamp, np.zeros(self._vehicle.n_thrusters))
-
-    def safe_effort(self) -> JointCommand:
-        """The command that the plant uses where none arrives: no torque."""
-        return JointCommand(self._stamp, np.zeros(self._vehicle.n_joints))
-
-    def step(self, thruster: ThrusterCommand, joints: JointCommand) -> None:
+    def step(self, thruster: ThrusterCommand | None, joints: JointCommand | None) -> None:
         """Advance by one control period under constant commands, cut at the drives' limits.
+
+        None is the safe state, where there is no command to use: no thrust, no torque.
 
         Raises SignalError for a command of wrong size or that is not finite (the plant then does
         not move), PlantDiverged where the state is no longer finite.
         """
+        self._safe = thruster is None, joints is None
+        thruster = thruster or ThrusterCommand(self._stamp, np.zeros(self._vehicle.n_thrusters))
+        joints = joints or JointCommand(self._stamp, np.zeros(self._vehicle.n_joints))
         checks.check("thruster_command", thruster, m=self._vehicle.thruster_names)
         checks.check("joint_command", joints, n=self._vehicle.joint_names)
+        self._commands = thruster, joints
         limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
         self._effort = np.clip(joints.effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
@@ -105,9 +104,22 @@ class Plant:
         stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
         self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
 
+    def _applied(self) -> AppliedThrust:
+        thruster, joints = self._commands
+        return AppliedThrust(
+            self._stamp,
+            self._state[JOINTS + 2 * self._vehicle.n_joints :].copy(),
+            thruster.thrust,
+            thruster.stamp,
+            joints.stamp,
+            *self._safe,
+        )
+
     def _start(self) -> None:
         """Derivative and sensor readings of t = 0, without commands."""
         idle = np.zeros(self._vehicle.n_thrusters)
+        self._commands = ThrusterCommand(0, idle), JointCommand(0, self._effort)
+        self._safe = True, True
         self._integrate(idle, self._states[:1], self._rates[:1])
         self._frame = self._sample((0,), self._states[:1], self._rates[:1])
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_core.signals import Array, DisturbanceBudget, JointStates, Odometry
+from uvms_core.signals import AppliedThrust, Array, DisturbanceBudget, JointStates, Odometry
 from uvms_dynamics.kernels import coupling_wrench, restoring_wrench
 from uvms_dynamics.kernels.hull import hull_hydrodynamic_wrench
 from uvms_dynamics.kernels.layout import HULL
@@ -22,7 +22,12 @@ class PlantTruth:
     odometry: Odometry
     joints: JointStates
     disturbance: DisturbanceBudget
-    thrust: Array  # (m,) N
+    applied: AppliedThrust
+
+    @property
+    def thrust(self) -> Array:
+        """Thrust of each thruster, (m,) N."""
+        return self.applied.thrust
 
 
 def true_odometry(stamp: int, state: Array, current: Array) -> Odometry:
