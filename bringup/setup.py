@@ -38,7 +38,7 @@ setup(
     zip_safe=False,
     entry_points={
         "console_scripts": [
-            "uvms = uvms_bringup.cli:main",
+            "uvms = uvms_bringup.entry:main",
             "state_publisher = uvms_bringup.ros.state_publisher:main",
         ],
         "uvms.commands": [

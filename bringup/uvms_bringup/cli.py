@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import Any
 
+from uvms_bringup.errors import BringupError
 from uvms_core import registry
 from uvms_core.command import Command
 from uvms_core.errors import PluginError, UvmsError
@@ -31,10 +32,10 @@ FIRST = ("run", "simulate", "replay", "report")
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the command line; the project's own errors end in one clear message and code 2."""
     arguments = list(sys.argv[1:] if arguments is None else arguments)
-    _search_working_directory()
     try:
+        _search_working_directory()
         options = parser(_chosen(arguments)).parse_args(arguments)
-        options.command_line = "uvms " + shlex.join(arguments)
+        options.command_line = "uvms " + _readable(shlex.join(arguments))
         return options.run_command(options)
     except BrokenPipeError:  # the reader of the output has gone, as in `uvms fields | head`
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
@@ -47,10 +48,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return 130
 
 
+def _readable(text: str) -> str:
+    """Text of the command line for UTF-8 files, whatever encoding the terminal has."""
+    return os.fsencode(text).decode("utf-8", errors="backslashreplace")
+
+
 def _search_working_directory() -> None:
     """Find `my_module:MyClass` in the working directory, as `python -m` does for the nodes."""
-    if os.getcwd() not in sys.path:
-        sys.path.append(os.getcwd())
+    try:
+        here = os.getcwd()
+    except FileNotFoundError:
+        raise BringupError(
+            "the working directory does not exist any more; change to another one"
+        ) from None
+    if here not in sys.path:
+        sys.path.append(here)
 
 
 def parser(chosen: str | None = None) -> argparse.ArgumentParser:
