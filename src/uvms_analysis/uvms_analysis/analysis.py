@@ -6,14 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.log import goal_file
 from uvms_analysis.log.read import RunLog, Series
 from uvms_core import topics
 from uvms_core.end_effector_path import EndEffectorPath
-from uvms_core.errors import UvmsError, VehicleFileError
+from uvms_core.errors import UvmsError
 from uvms_core.signals import Array, PathGoal, Reference, to_seconds
 from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.loader import vehicle_from_yaml
 from uvms_dynamics import Model, build_model, end_effector
 from uvms_dynamics.kernels.rotations import quat_to_rpy
 
@@ -45,14 +43,10 @@ class Analysis:
     def __init__(self, log: RunLog) -> None:
         self.log = log
 
-    @cached_property
+    @property
     def vehicle(self) -> Vehicle:
         """The vehicle of the run; LogError where the log's copy is missing or damaged."""
-        text = self.log.text("vehicle.yaml")
-        try:
-            return vehicle_from_yaml(text, f"log {self.log.path}: its attachment 'vehicle.yaml'")
-        except VehicleFileError as fault:
-            raise LogError(str(fault)) from fault
+        return self.log.vehicle
 
     @cached_property
     def _model(self) -> Model:
@@ -140,17 +134,10 @@ class Analysis:
         last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
         return Series(stamps[last], {name: column[last] for name, column in columns.items()})
 
-    @cached_property
+    @property
     def path(self) -> PathGoal | None:
         """The path of the run's goal, None without one."""
-        if goal_file.NAME not in self.log.attachments:
-            return None
-        goal = goal_file.path_from_json(self.log.text(goal_file.NAME))
-        try:
-            EndEffectorPath(goal)
-        except (UvmsError, ValueError, IndexError) as fault:
-            raise LogError(f"log {self.log.path}: {goal_file.NAME}: {fault}") from fault
-        return goal
+        return self.log.path_goal
 
     @cached_property
     def path_start_s(self) -> float:

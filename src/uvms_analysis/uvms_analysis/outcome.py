@@ -65,7 +65,7 @@ def judge(log: RunLog, check: Check | None = None) -> Outcome:
 
 
 def _invalid(log: RunLog, check: Check) -> list[str]:
-    if not log.run:
+    if not log.run and _end(log) is None:
         return [NO_RUN, *map(_reason, check.faults)]
     return [_reason(finding) for finding in check.faults]
 

@@ -4,11 +4,13 @@ import zlib
 from array import array
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from uvms_analysis.errors import LogError
+from uvms_analysis.log import run_end
 from uvms_analysis.log.definition import UNDECODABLE
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
@@ -29,6 +31,7 @@ class Topics:
     stamps: array = field(default_factory=lambda: array("q"))
     checksums: array = field(default_factory=lambda: array("L"))
     rejected: list[str] = field(default_factory=list)
+    names: tuple[str, ...] | None = None  # of joints or thrusters, in the first message
     moved: int = 0  # messages whose own stamp is not the log time
 
     @cached_property
@@ -61,7 +64,7 @@ class Contents:
     @property
     def is_ours(self) -> bool:
         """Whether it is the log of a run of this project."""
-        return bool(self.log.run)
+        return bool(self.log.run) or run_end.NAME in self.log.metadata
 
     @property
     def is_lockstep(self) -> bool:
@@ -107,10 +110,21 @@ class Contents:
             return
         topic, decode = self._readers[name]
         try:
-            signal = from_message(topic, decode(data))
+            message = decode(data)
+            signal = from_message(topic, message)
         except UNDECODABLE as fault:
             found.rejected.append(f"{stamp / NANOSECONDS:.3f} s: {fault}")
             return
+        if found.names is None:
+            found.names = _names(message)
         if topic not in NOT_STAMPED:
             own = signal if isinstance(signal, int) else signal.stamp
             found.moved += own != stamp
+
+
+def _names(message: Any) -> tuple[str, ...]:
+    """Of joints or thrusters, in a message that has them; else none."""
+    for field_name in ("name", "joint_names", "thruster_names"):
+        if hasattr(message, field_name):
+            return tuple(map(str, getattr(message, field_name)))
+    return ()

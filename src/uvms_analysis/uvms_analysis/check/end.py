@@ -5,8 +5,6 @@ from collections.abc import Iterator
 from uvms_analysis.check.contents import Contents
 from uvms_analysis.check.finding import END, Finding
 from uvms_analysis.errors import LogError
-from uvms_core.errors import UvmsError
-from uvms_core.vehicle.loader import vehicle_from_yaml
 
 
 def check_end(contents: Contents) -> Iterator[Finding]:
@@ -32,11 +30,14 @@ def check_end(contents: Contents) -> Iterator[Finding]:
 
 def _configuration(contents: Contents) -> Iterator[Finding]:
     log = contents.log
-    try:
-        log.configuration()
-        vehicle_from_yaml(log.text("vehicle.yaml"), "its attachment 'vehicle.yaml'")
-    except UvmsError as fault:
-        yield Finding(END, str(fault).removeprefix(f"log {log.path}: "))
+    for read in (log.configuration, lambda: log.vehicle, lambda: log.path_goal):
+        try:
+            read()
+        except LogError as fault:
+            yield Finding(END, str(fault).removeprefix(f"log {log.path}: "))
+    if not log.run:
+        yield Finding(END, "no record of what was run")
+        return
     seed = log.run.get("seed", "")
     if not seed.lstrip("+-").isdigit():
         yield Finding(END, f"the seed {seed!r} is not a number")

@@ -1,14 +1,14 @@
 """How many messages a topic must have, from the vehicle file, the scenario and the span."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 from uvms_analysis.check.contents import Contents
 from uvms_analysis.errors import LogError
 from uvms_core import topics
-from uvms_core.errors import UvmsError
 from uvms_core.sensors import sensor_types
 from uvms_core.signals import to_nanoseconds
-from uvms_core.vehicle.loader import vehicle_from_yaml
 
 LATCHED = (topics.TF_STATIC, topics.ROBOT_DESCRIPTION)
 
@@ -36,18 +36,15 @@ class Rhythms:
 def rhythms(contents: Contents) -> Rhythms | None:
     """The rhythms of the run; None where the log does not say what was run.
 
-    A damaged configuration is a finding of its own: `check.end`.
+    Raises:
+        LogError: it does, but its configuration has no usable periods.
     """
     log = contents.log
     try:
-        config = log.configuration()
-        vehicle = vehicle_from_yaml(log.text("vehicle.yaml"), "vehicle.yaml")
-        tick = to_nanoseconds(float(config["plant"]["control_period_s"]))
-        step = to_nanoseconds(float(config["planner"]["step_s"]))
-        if tick <= 0 or step <= 0:
-            return None
-    except (UvmsError, LogError, KeyError, TypeError, ValueError, OverflowError):
+        config, vehicle = log.configuration(), log.vehicle
+    except LogError:  # a finding of its own: `check.end`
         return None
+    tick, step = _period(config, "plant.control_period_s"), _period(config, "planner.step_s")
     found = {topic: Rhythm(tick) for topic in topics.of(vehicle)}
     for sensor in sensor_types(vehicle):
         rate = vehicle.sensors.mounted[sensor.name].rate_hz
@@ -57,3 +54,15 @@ def rhythms(contents: Contents) -> Rhythms | None:
     found |= {topic: Rhythm(0, extra=1) for topic in LATCHED}
     found.pop(topics.DIAGNOSTICS)  # a node reports when it has something to say
     return Rhythms(tick, {log.full_name(topic): rhythm for topic, rhythm in found.items()})
+
+
+def _period(config: Mapping[str, Any], path: str) -> int:
+    """A period of the configuration in ns."""
+    section, name = path.split(".")
+    try:
+        period = to_nanoseconds(float(config[section][name]))
+    except (KeyError, TypeError, ValueError, OverflowError):
+        period = 0
+    if period <= 0:
+        raise LogError(f"its attachment 'config.yaml' has no usable {path}")
+    return period

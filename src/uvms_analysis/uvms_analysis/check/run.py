@@ -12,9 +12,10 @@ from uvms_analysis.check.counts import check_counts, expected_counts
 from uvms_analysis.check.end import check_end
 from uvms_analysis.check.expected import Rhythms, rhythms
 from uvms_analysis.check.file import check_file
-from uvms_analysis.check.finding import Finding
+from uvms_analysis.check.finding import END, Finding
 from uvms_analysis.check.order import check_order
 from uvms_analysis.check.span import check_span
+from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_core.signals import NANOSECONDS
 
@@ -89,8 +90,13 @@ def check_log(log: str | Path | RunLog) -> Check:
         LogError: the file cannot be read, or it is not an MCAP file.
     """
     contents = Contents(log if isinstance(log, RunLog) else RunLog.open(log))
-    rhythm = rhythms(contents)
+    unusable: tuple[Finding, ...] = ()
+    try:
+        rhythm = rhythms(contents)
+    except LogError as fault:
+        rhythm, unusable = None, (Finding(END, str(fault)),)
     findings = (
+        *unusable,
         *check_file(contents),
         *check_end(contents),
         *check_span(contents, rhythm),

@@ -1,6 +1,6 @@
 """Reads a log topic by topic, as signals or as numpy arrays over time."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
@@ -8,16 +8,19 @@ from typing import Any
 import numpy as np
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.log import run_end
+from uvms_analysis.log import goal_file, run_end
 from uvms_analysis.log.definition import UNDECODABLE, log_codec, same_definition
 from uvms_analysis.log.records import Entry, Records, read_records
 from uvms_analysis.log.run_end import RunEnd
 from uvms_core import topics
 from uvms_core.cdr import Codec
 from uvms_core.diagnostics import Status
+from uvms_core.errors import VehicleFileError
 from uvms_core.messages import from_message
-from uvms_core.signals import NANOSECONDS, Array
+from uvms_core.signals import NANOSECONDS, Array, PathGoal
 from uvms_core.topics import Topic
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.loader import vehicle_from_yaml
 from uvms_core.yaml_text import parse_yaml
 
 RUN = "uvms"
@@ -71,6 +74,7 @@ class RunLog:
         for number, channel in records.channels.items():
             self._numbers.setdefault(channel.topic, []).append(number)
         self._signals: dict[str, list[Any]] = {}
+        self._read: dict[str, Any] = {}
         self.namespace = self._find_namespace()
 
     @classmethod
@@ -106,12 +110,7 @@ class RunLog:
             LogError: the record is damaged.
         """
         record = self.metadata.get(run_end.NAME)
-        if record is None:
-            return None
-        try:
-            return RunEnd.from_metadata(record)
-        except (TypeError, AttributeError) as fault:
-            raise LogError(f"log {self.path}: metadata {run_end.NAME!r}: {fault}") from fault
+        return None if record is None else RunEnd.from_metadata(record)
 
     def text(self, name: str) -> str:
         """An attachment as text.
@@ -137,11 +136,53 @@ class RunLog:
         Raises:
             LogError: the log has none, or it is damaged.
         """
+        return self._once("config.yaml", self._read_configuration)
+
+    @property
+    def vehicle(self) -> Vehicle:
+        """The vehicle of the run.
+
+        Raises:
+            LogError: the log has none, or it is damaged.
+        """
+        return self._once("vehicle.yaml", self._read_vehicle)
+
+    @property
+    def path_goal(self) -> PathGoal | None:
+        """The path that the planner was asked for, None without one.
+
+        Raises:
+            LogError: it is damaged.
+        """
+        name = goal_file.NAME
+        if name not in self.attachments and name not in self._records.left_out:
+            return None
+        return self._once(name, lambda: goal_file.path_from_json(self.text(name)))
+
+    def _once(self, name: str, read: Callable[[], Any]) -> Any:
+        """What an attachment says; it is read once, even where that fails, which takes long."""
+        if name not in self._read:
+            try:
+                self._read[name] = read()
+            except LogError as fault:
+                self._read[name] = fault
+        if isinstance(self._read[name], LogError):
+            raise LogError(str(self._read[name]))
+        return self._read[name]
+
+    def _read_configuration(self) -> dict[str, Any]:
         what = f"log {self.path}: its attachment 'config.yaml'"
         values = parse_yaml(self.text("config.yaml"), what, LogError)
         if not isinstance(values, dict):
             raise LogError(f"{what} is not a mapping of names to values")
         return values
+
+    def _read_vehicle(self) -> Vehicle:
+        what = f"log {self.path}: its attachment 'vehicle.yaml'"
+        try:
+            return vehicle_from_yaml(self.text("vehicle.yaml"), what)
+        except VehicleFileError as fault:
+            raise LogError(str(fault)) from fault
 
     def has(self, topic: Topic) -> bool:
         """Whether there is a channel of the topic."""

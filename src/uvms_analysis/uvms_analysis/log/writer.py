@@ -6,7 +6,7 @@ times slower than `uvms_core.cdr` does, and the mcap package's own grows with ev
 
 import struct
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import TracebackType
@@ -76,7 +76,7 @@ class LogWriter:
         self._summary = _Summary()
         self._digests: dict[str, str] = {}
         self._sealed = 0
-        self._schemas: dict[str, int] = {}
+        self._schemas: dict[tuple[str, bytes], int] = {}
         self._channels: dict[str, _Channel] = {}
         self._fault: LogError | None = None
         self._open = True
@@ -143,20 +143,26 @@ class LogWriter:
             summary.last = stamp
 
     def _register(self, topic: str, type_name: str, qos: str) -> _Channel:
-        self._add_schema(type_name, lambda: schema.schema_text(type_name).encode())
-        return self._add_channel(topic, type_name, schema.channel_metadata(type_name, qos))
+        text = schema.schema_text(type_name).encode()
+        metadata = schema.channel_metadata(type_name, qos)
+        return self._add_channel(topic, type_name, text, metadata)
 
-    def _add_schema(self, type_name: str, text: Callable[[], bytes]) -> None:
-        if type_name not in self._schemas:
-            number = self._schemas[type_name] = len(self._schemas) + 1
-            record = form.schema(number, type_name, schema.ENCODING, text())
+    def _schema(self, type_name: str, text: bytes) -> int:
+        """The number of a definition, which is added where it is new."""
+        key = type_name, text
+        if key not in self._schemas:
+            number = self._schemas[key] = len(self._schemas) + 1
+            record = form.schema(number, type_name, schema.ENCODING, text)
             self._summary.schemas.append(record)
             self._chunk.describe(record)
+        return self._schemas[key]
 
-    def _add_channel(self, topic: str, type_name: str, metadata: Mapping[str, str]) -> _Channel:
+    def _add_channel(
+        self, topic: str, type_name: str, text: bytes, metadata: Mapping[str, str]
+    ) -> _Channel:
+        own = self._schema(type_name, text)
         channel = _Channel(len(self._channels) + 1, type_name, dict(metadata))
-        number = channel.number, self._schemas[type_name]
-        record = form.channel(*number, topic, schema.MESSAGE_ENCODING, metadata)
+        record = form.channel(channel.number, own, topic, schema.MESSAGE_ENCODING, metadata)
         self._summary.channels.append(record)
         self._chunk.describe(record)
         self._channels[topic] = channel
@@ -167,8 +173,7 @@ class LogWriter:
     ) -> None:
         """Register a channel as another log describes it; its type need not be installed."""
         if topic not in self._channels:
-            self._add_schema(type_name, lambda: text)
-            self._add_channel(topic, type_name, metadata)
+            self._add_channel(topic, type_name, text, metadata)
 
     def _put(self, data: bytes) -> None:
         if self._fault is not None:
