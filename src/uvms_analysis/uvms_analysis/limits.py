@@ -16,7 +16,7 @@ back from in the scenarios, without the observer, is 15."""
 SATURATED_SHARE = 0.5
 SATURATED_S = 30.0
 """Some thruster at its limit in more than this share of the ticks, or for so long without a break:
-the vehicle then goes where the water takes it, since its thrusters change direction within 2 s."""
+the vehicle then goes where the water takes it, since its thrusters turn round within 0.5 s."""
 
 NEAR_M = 0.2
 """Distance of the end effector from where it should be, at which it still counts as near, in

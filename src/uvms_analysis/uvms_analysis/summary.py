@@ -27,6 +27,7 @@ LOADED = (
     topics.JOINT_STATES,
     topics.REFERENCE,
     topics.ALLOCATION,
+    topics.APPLIED_THRUST,
     topics.DIAGNOSTICS,
 )
 

@@ -47,11 +47,14 @@ class Contents:
         self.log = log
         self.unusable: dict[str, str] = {}
         self.topics = {name: Topics(type_name) for name, type_name in log.topics.items()}
+        self._decoded: dict[str, Topic] = {}  # what the log holds as signals already
         self._readers = {
             name: reader for name in self.topics if (reader := self._reader(name)) is not None
         }
         for name, entry in log.entries():
             self._take(name, self.topics[name], entry.stamp, entry.data)
+        for name, topic in self._decoded.items():
+            self._compare(self.topics[name], topic)
 
     @cached_property
     def end(self) -> RunEnd | None:
@@ -97,6 +100,8 @@ class Contents:
         topic = topics.BY_NAME.get(name) or topics.BY_NAME.get(short)
         if topic is None or topic.signal is None or topic is topics.TF:  # which is only written
             return None
+        if log.is_loaded(topic) and topic is not topics.DIAGNOSTICS:
+            self._decoded[name] = topic
         try:
             return topic, log.decoder(topic)
         except LogError as fault:
@@ -106,20 +111,30 @@ class Contents:
     def _take(self, name: str, found: Topics, stamp: int, data: bytes) -> None:
         found.stamps.append(min(stamp, 2**63 - 1))
         found.checksums.append(zlib.crc32(data))
-        if name not in self._readers:
-            return
+        if name not in self._readers or (found.names is not None and name in self._decoded):
+            return  # of what is decoded already, the first message alone, for its names
         topic, decode = self._readers[name]
         try:
             message = decode(data)
             signal = from_message(topic, message)
         except UNDECODABLE as fault:
+            if name in self._decoded:
+                return
             found.rejected.append(f"{stamp / NANOSECONDS:.3f} s: {fault}")
             return
         if found.names is None:
             found.names = _names(message)
-        if topic not in NOT_STAMPED:
+        if topic not in NOT_STAMPED and name not in self._decoded:
             own = signal if isinstance(signal, int) else signal.stamp
             found.moved += own != stamp
+
+    def _compare(self, found: Topics, topic: Topic) -> None:
+        """The same for a topic that the log has decoded already."""
+        found.rejected = list(self.log.rejected.get(topic.name, ()))
+        if topic in NOT_STAMPED or found.rejected:
+            return
+        own = [one if isinstance(one, int) else one.stamp for one in self.log.signals(topic)]
+        found.moved = int(np.sum(np.array(own, dtype=np.int64) != found.times))
 
 
 def _names(message: Any) -> tuple[str, ...]:

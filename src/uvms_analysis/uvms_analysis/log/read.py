@@ -253,6 +253,10 @@ class RunLog:
                 what = f"{stamp / NANOSECONDS:.3f} s: {fault}"
                 self.rejected.setdefault(topic.name, []).append(what)
 
+    def is_loaded(self, topic: Topic) -> bool:
+        """Whether the topic's signals are decoded already."""
+        return topic.name in self._signals
+
     def series(self, topic: Topic) -> Series:
         """A topic over time, each field of its signal in one array.
 
