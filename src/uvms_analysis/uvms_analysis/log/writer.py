@@ -5,7 +5,6 @@ times slower than `uvms_core.cdr` does, and the mcap package's own grows with ev
 """
 
 import struct
-import time
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -20,6 +19,7 @@ from uvms_analysis.log.bag_metadata import Bag, BagTopic, write_bag_metadata
 from uvms_analysis.log.chunk import OpenChunk
 from uvms_analysis.log.file import LogFile
 from uvms_analysis.log.index import ChunkNotes
+from uvms_analysis.log.wall_clock import time_ns
 
 CHUNK_SIZE = 32 * 1024
 """Bytes of messages in a chunk; a writer that is killed loses at most this much."""
@@ -127,7 +127,7 @@ class LogWriter:
             raise LogError(f"log {self.path}: {topic} is {channel.type}, not {type_name}")
         if not 0 <= stamp < _TOO_LATE:
             raise LogError(f"log {self.path}: {topic}: the stamp {stamp} ns cannot be recorded")
-        wall = time.time_ns() if publish_time is None else publish_time
+        wall = time_ns() if publish_time is None else publish_time
         self._chunk.add(channel.number, channel.count & _SEQUENCE, (stamp, wall), data)
         channel.count += 1
         self.message_count += 1
