@@ -10,8 +10,10 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
+from uvms_analysis.log import run_end
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
+from uvms_analysis.log.run_end import RunEnd
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.summary import summarise
 from uvms_bringup.cast import Cast
@@ -110,26 +112,32 @@ class Session:
             clock.start()
             line.show(stamp, note)
 
-        completed = False
         with LogWriter(self.folder / "run.mcap") as log:
             self._describe(log, config)
             try:
-                completed = run(log, progress)
+                succeeded = run(log, progress)
+                self._end(log, goal=_goal_word(self.goal, succeeded))
             except UvmsError as fault:
                 self._give_up(log, clock, fault)
                 raise
             finally:
                 line.end()
         clock.stop()
-        return self._summarise(completed, clock)
+        return self._summarise(clock)
+
+    def _end(self, log: LogWriter, goal: str, stopped_by: str = "") -> None:
+        asked = self.scenario.duration_s
+        record = RunEnd(asked, stopped_by, goal, sent=log.counts)
+        log.metadata(run_end.NAME, record.to_metadata())
 
     def _give_up(self, log: LogWriter, clock: Stopwatch, fault: UvmsError) -> None:
         """Keep what was recorded, with the reason; a run that never began leaves no log."""
         log.metadata("fault", {"message": fault})
+        self._end(log, "running", str(fault))
         log.close()
         clock.stop()
         if clock.run_s > 0.0:
-            self._summarise(False, clock)
+            self._summarise(clock)
         else:
             log.path.unlink()
 
@@ -150,13 +158,19 @@ class Session:
             },
         )
 
-    def _summarise(self, completed: bool, clock: Stopwatch) -> dict[str, Any]:
+    def _summarise(self, clock: Stopwatch) -> dict[str, Any]:
         log = self.folder / "run.mcap"
-        summary = summarise(log, completed=completed, wall_s=clock.run_s)
+        summary = summarise(log, wall_s=clock.run_s)
         summary["start_up_s"] = clock.start_up_s
         text = json.dumps(summary, indent=2)
         (self.folder / "summary.json").write_text(text + "\n", encoding="utf-8")
         return summary
+
+
+def _goal_word(goal: Goal, succeeded: bool) -> str:
+    if goal is None:
+        return "none"
+    return "succeeded" if succeeded else "aborted"
 
 
 def prepare(

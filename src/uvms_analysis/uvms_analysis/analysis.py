@@ -6,14 +6,12 @@ from functools import cached_property
 import numpy as np
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.log import goal_file
 from uvms_analysis.log.read import RunLog, Series
 from uvms_core import topics
 from uvms_core.end_effector_path import EndEffectorPath
-from uvms_core.errors import VehicleFileError
+from uvms_core.errors import UvmsError
 from uvms_core.signals import Array, PathGoal, Reference, to_seconds
 from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.loader import vehicle_from_yaml
 from uvms_dynamics import Model, build_model, end_effector
 from uvms_dynamics.kernels.rotations import quat_to_rpy
 
@@ -45,18 +43,17 @@ class Analysis:
     def __init__(self, log: RunLog) -> None:
         self.log = log
 
-    @cached_property
+    @property
     def vehicle(self) -> Vehicle:
         """The vehicle of the run; LogError where the log's copy is missing or damaged."""
-        text = self.log.text("vehicle.yaml")
-        try:
-            return vehicle_from_yaml(text, f"log {self.log.path}: its attachment 'vehicle.yaml'")
-        except VehicleFileError as fault:
-            raise LogError(str(fault)) from fault
+        return self.log.vehicle
 
     @cached_property
     def _model(self) -> Model:
-        return build_model(self.vehicle)
+        try:
+            return build_model(self.vehicle)
+        except UvmsError as fault:
+            raise LogError(f"log {self.log.path}: its vehicle: {fault}") from fault
 
     @cached_property
     def _true(self) -> tuple[Series, Series]:
@@ -110,6 +107,11 @@ class Analysis:
         return Series(odometry.stamps, {"position": self._tool(odometry, joints)})
 
     def _tool(self, odometry: Series, joints: Series) -> Array:
+        if joints.position.shape[1:] != (self.vehicle.n_joints,):
+            raise LogError(
+                f"log {self.log.path}: its messages have {joints.position.shape[1]} joints, its"
+                f" vehicle {self.vehicle.n_joints}"
+            )
         rows = zip(odometry.position, odometry.quaternion, joints.position, strict=True)
         return np.array([end_effector(self._model, *row)[0] for row in rows])
 
@@ -132,12 +134,10 @@ class Analysis:
         last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
         return Series(stamps[last], {name: column[last] for name, column in columns.items()})
 
-    @cached_property
+    @property
     def path(self) -> PathGoal | None:
         """The path of the run's goal, None without one."""
-        if goal_file.NAME not in self.log.attachments:
-            return None
-        return goal_file.path_from_json(self.log.text(goal_file.NAME))
+        return self.log.path_goal
 
     @cached_property
     def path_start_s(self) -> float:
@@ -221,5 +221,7 @@ class Analysis:
     @cached_property
     def lockstep_timeouts(self) -> int:
         """Number of times the plant continued without a command."""
+        if topics.DIAGNOSTICS.name in self.log.unusable:
+            return 0
         values = [status.number("lockstep_timeouts") for status in self.log.statuses(topics.PLANT)]
         return int(max((value for value in values if np.isfinite(value)), default=0))

@@ -7,7 +7,7 @@ from uvms_core.command import Command
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `uvms report`."""
-    parser.add_argument("log", metavar="RUN.mcap", help="log of a run")
+    parser.add_argument("log", metavar="RUN.mcap|DIR", help="log of a run, or its folder")
     parser.add_argument("--output", metavar="DIR", help="where to (default: beside the log)")
     parser.add_argument(
         "--picture",
@@ -18,12 +18,14 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Draw the figures and write the page, or draw the picture; print where it is."""
+    from uvms_analysis.log.locate import log_path
     from uvms_analysis.report import draw_scene, report
 
+    log = log_path(options.log)
     if options.picture is not None:
-        print(draw_scene(options.log, options.picture))
+        print(draw_scene(log, options.picture))
     else:
-        print(report(options.log, options.output))
+        print(report(log, options.output))
     return 0
 
 

@@ -5,6 +5,8 @@ import json
 import numpy as np
 
 from uvms_analysis.errors import LogError
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.errors import UvmsError
 from uvms_core.signals import PathGoal
 
 NAME = "path.json"
@@ -34,4 +36,9 @@ def path_from_json(text: str) -> PathGoal:
         orientations = np.array(data["orientations"], dtype=np.float64).reshape(-1, 4)
     except (ValueError, KeyError, TypeError) as fault:
         raise LogError(f"{NAME}: is not a path of the end effector: {fault}") from fault
-    return PathGoal(times, positions, orientations)
+    goal = PathGoal(times, positions, orientations)
+    try:
+        EndEffectorPath(goal)
+    except (UvmsError, ValueError, IndexError) as fault:
+        raise LogError(f"{NAME}: is not a path of the end effector: {fault}") from fault
+    return goal

@@ -4,7 +4,8 @@ The last metadata record of a log. A log without it was cut off: its writer was 
 """
 
 import json
-from collections.abc import Mapping
+import math
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field, fields
 from typing import Any
 
@@ -12,6 +13,8 @@ from uvms_analysis.errors import LogError
 
 NAME = "run_end"
 """Name of the metadata record."""
+
+GOALS = ("none", "running", "succeeded", "aborted", "canceled", "rejected")
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,34 @@ class RunEnd:
                 values[each.name] = json.loads(record[each.name])
             except (KeyError, ValueError) as fault:
                 raise LogError(f"metadata {NAME!r}: {each.name} is missing or damaged") from fault
+        for name, is_right in _RIGHT.items():
+            if not is_right(values[name]):
+                raise LogError(f"metadata {NAME!r}: {name} is {values[name]!r}")
         for name in ("foreign", "incidents"):
             values[name] = tuple(values[name])
         return cls(**values)
+
+
+def _is_duration(value: Any) -> bool:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    return number and math.isfinite(value) and value >= 0.0
+
+
+def _is_counts(value: Any) -> bool:
+    return isinstance(value, dict) and all(type(n) is int and n >= 0 for n in value.values())
+
+
+def _is_texts(value: Any) -> bool:
+    return isinstance(value, list) and all(isinstance(one, str) for one in value)
+
+
+_RIGHT: dict[str, Callable[[Any], bool]] = {
+    "asked_s": _is_duration,
+    "stopped_by": lambda value: isinstance(value, str),
+    "goal": lambda value: value in GOALS,
+    "sent": _is_counts,
+    "lost": _is_counts,
+    "foreign": _is_texts,
+    "incidents": _is_texts,
+}
+"""What the values of a record must be; it may have been damaged or written by hand."""
