@@ -2,7 +2,7 @@
 
 They are wide: nothing that a vehicle can do is refused, be it capsizing, falling with ten times its
 mass, drifting in a strong current or limp. What is refused cannot be a measurement or a command of
-this vehicle at all.
+this vehicle at all. Covariances of samples have none: no part of the system reads them.
 """
 
 from collections.abc import Callable
@@ -39,6 +39,9 @@ UNEXPLAINED = 1000.0
 """A disturbance against the weight and all thrust: what an observer makes of an impact."""
 ACCELERATION = 1000.0
 """A planned acceleration, m/s^2 or rad/s^2: none of these vehicles has a hundredth of it."""
+UNIT = 10.0
+"""Of a quaternion, whose length `uvms_core.checks` holds to 1; wide, so that the quick test of the
+whole signal is left to the other values."""
 VARIANCE = 1e12
 """A std of a million of whatever unit: what filters write for `not known` is below it."""
 SIGMAS = 6.0
@@ -68,19 +71,15 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
             _quaternion("quaternion", scale, noise),
             within("angular_velocity", scale.rate, 3, "rad/s"),
             within("linear_acceleration", force, 3, "m/s^2"),
-            *(_covariance(f"{name}_covariance", 3) for name in _IMU_FIELDS),
         ),
         quaternion="quaternion",
     )
 
 
-_IMU_FIELDS = ("orientation", "angular_velocity", "linear_acceleration")
-
-
 def _dvl(vehicle: Vehicle, scale: Scale) -> Rule:
     """The transducer moves with the hull: its lever times the rate comes on top."""
     speed = scale.speed + scale.rate * float(np.linalg.norm(vehicle.sensors.dvl.position_m))
-    return Rule((within("velocity", speed, 3, "m/s"), _covariance("covariance", 3)))
+    return Rule((within("velocity", speed, 3, "m/s"),))
 
 
 def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -91,12 +90,7 @@ def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
     low = sea.atmospheric_pressure_pa - ABOVE_M * metre - noise
     high = sea.atmospheric_pressure_pa + DEEPEST_M * metre + noise
     jump = NOISES * sensor.noise_pa + 0.1 * metre
-    return Rule(
-        (
-            Bound("pressure", low, high, 1, "Pa", rate=metre * speed, slack=jump),
-            Bound("variance", -1.0, VARIANCE, 1, "Pa^2"),
-        )
-    )
+    return Rule((Bound("pressure", low, high, 1, "Pa", rate=metre * speed, slack=jump),))
 
 
 def _gps(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -105,7 +99,6 @@ def _gps(vehicle: Vehicle, scale: Scale) -> Rule:
             Bound("latitude_deg", -90.0, 90.0, 0, "deg", only_if="fix"),
             Bound("longitude_deg", -360.0, 360.0, 0, "deg", only_if="fix"),
             Bound("altitude", -DEEPEST_M, DEEPEST_M, 0, "m", only_if="fix"),
-            Bound("covariance", -VARIANCE, VARIANCE, 0, "m^2"),
         )
     )
 
@@ -216,11 +209,11 @@ _NOT_NUMBERS = ("saturated",)
 
 def _quaternion(field: str, scale: Scale, noise: float) -> Bound:
     """Components change by half the angle; the slack is for the estimate's corrections."""
-    return within(field, 1.1, 4, "", rate=0.5 * scale.rate, slack=0.1 + noise)
+    return within(field, UNIT, 4, "", rate=0.5 * scale.rate, slack=0.1 + noise)
 
 
 def _covariance(field: str, size: int) -> Bound:
-    return within(field, VARIANCE, size * size, "")
+    return within(field, VARIANCE, size * size, "", is_matrix=True)
 
 
 def _angles(vehicle: Vehicle) -> tuple[Array, Array]:

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from uvms_core.errors import ImplausibleError
+from uvms_core import checks
+from uvms_core.errors import ImplausibleError, SignalError
 from uvms_core.plausibility.bounds import bounds_of
 from uvms_core.plausibility.rule import Rule
 from uvms_core.plausibility.watch import Watch
@@ -44,8 +45,12 @@ class Plausibility:
         return f"{topic.name}: {news}"
 
     def fault(self, topic: Topic, signal: Any) -> str | None:
-        """Why a signal must not go out, in words; None where it may."""
+        """Why a signal must not go out, in words; None where it may, which marks it as checked."""
         rule = self._rules.get(topic.name) or self._rule(topic)
+        try:
+            checks.check(topic.name, signal)
+        except SignalError as fault:
+            return str(fault)
         if rule.is_flat and rule.is_possible(rule.flat(signal)):
             return None
         fault = rule.explain(signal)

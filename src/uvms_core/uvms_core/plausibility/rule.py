@@ -33,6 +33,7 @@ class Bound:
         rate: how fast the value can change, per s.
         slack: how much it may change beside that from sample to sample: noise and resolution.
         only_if: field that must be true for this bound to hold.
+        is_matrix: the field has two dimensions.
     """
 
     field: str
@@ -43,11 +44,12 @@ class Bound:
     rate: Values = UNBOUNDED
     slack: Values = 0.0
     only_if: str = ""
+    is_matrix: bool = False
 
 
-def within(field: str, limit: Values, size: int, unit: str, **jump: Values) -> Bound:
+def within(field: str, limit: Values, size: int, unit: str, **more: Any) -> Bound:
     """A bound that is the same in both directions."""
-    return Bound(field, -np.asarray(limit), np.asarray(limit), size, unit, **jump)  # type: ignore[arg-type]
+    return Bound(field, -np.asarray(limit), np.asarray(limit), size, unit, **more)
 
 
 class Rule:
@@ -74,6 +76,7 @@ class Rule:
         self._get = attrgetter(*(bound.field for bound in bounds))
         self._single = len(bounds) == 1
         self._scalar = all(bound.size == 1 for bound in bounds)
+        self._straight = not any(bound.is_matrix for bound in bounds)
         self.low, self.high = self._column("low"), self._column("high")
         self.rate, self.slack = self._column("rate"), self._column("slack")
         self._middle = 0.5 * (self.low + self.high)
@@ -87,32 +90,36 @@ class Rule:
         ]
         self.units = [bound.unit for bound in bounds for _ in range(bound.size)]
         self.turn = self._place(quaternion)
-        self._allowed: dict[int, tuple[Array, Array]] = {}
+        self._inverse: dict[int, Array] = {}
 
     def flat(self, signal: Any) -> Array:
         """The values of a signal as one array."""
         values: Any = self._get(signal)
-        if self._scalar:
-            return np.array(values if not self._single else (values,), dtype=np.float64)
         if self._single:
-            return values.ravel()
+            return np.atleast_1d(values).ravel()
+        if self._scalar:
+            return np.array(values, dtype=np.float64)
+        if self._straight:
+            return np.concatenate(values)
         return np.concatenate([value.ravel() for value in values])
 
     def is_possible(self, x: Array) -> bool:
         """Whether all values are within their bounds; False for NaN."""
         y = x * self._scale if self._centred else (x - self._middle) * self._scale
-        if y.dot(y) <= 1.0:
-            return True
-        return bool(((x >= self.low) & (x <= self.high)).all())
+        return y.dot(y) <= 1.0 or bool(((x >= self.low) & (x <= self.high)).all())
 
-    def allowed(self, elapsed: int) -> tuple[Array, Array]:
-        """Largest change over a time in ns, and its inverse; the few that occur are kept."""
-        if elapsed not in self._allowed:
-            if len(self._allowed) > 16:
-                self._allowed.clear()
-            change = np.minimum(self.slack + self.rate * (1e-9 * elapsed), UNBOUNDED)
-            self._allowed[elapsed] = change, 1.0 / change
-        return self._allowed[elapsed]
+    def allowed(self, elapsed: int) -> Array:
+        """Largest change over a time in ns."""
+        return self.slack + self.rate * (1e-9 * elapsed)
+
+    def inverse(self, elapsed: int) -> Array:
+        """1 / `allowed`; the few that occur are kept."""
+        found = self._inverse.get(elapsed)
+        if found is None:
+            if len(self._inverse) > 16:
+                self._inverse.clear()
+            found = self._inverse[elapsed] = 1.0 / self.allowed(elapsed)
+        return found
 
     def explain(self, signal: Any) -> str | None:
         """The first value that is not possible, in words; None where all are."""

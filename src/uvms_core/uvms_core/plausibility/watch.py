@@ -5,6 +5,8 @@ from typing import Any
 from uvms_core.plausibility.rule import Rule
 from uvms_core.signals import Array
 
+Sample = tuple[int, Array, Any]
+"""Stamp (ns), values as one array, signal."""
 AGREEING = 5
 """Samples that agree with each other, after which a jump is taken for real: a quarter of a second
 of control ticks, half as long as the last good value is kept. An outlier is one sample or a few;
@@ -21,8 +23,8 @@ class Watch:
 
     def reset(self) -> None:
         """Forget all samples: what comes next may be anywhere."""
-        self._last: tuple[int, Array, Any] | None = None
-        self._refused: tuple[int, Array, Any] | None = None
+        self._last: Sample | None = None
+        self._refused: Sample | None = None
         self._agreeing = 0
         self.news: str | None = None
         """Said once, when a jump was taken for real."""
@@ -35,16 +37,24 @@ class Watch:
         x = rule.flat(signal)
         if not rule.is_possible(x):
             return rule.explain(signal)
-        sample = (stamp, x, signal)
-        if rule.jumps and self._last is not None:
-            if (text := self._jump(self._last, sample)) and not self._is_confirmed(sample, text):
-                return text
-            self._refused = None
-        if self._last is None or stamp > self._last[0]:
+        if not rule.jumps:
+            return None
+        sample, last = (stamp, x, signal), self._last
+        if last is None:
             self._last = sample
+            return None
+        elapsed = stamp - last[0]
+        if elapsed <= 0:
+            return None  # a late sample: no time to compare with
+        y = (x - last[1]) * rule.inverse(elapsed)
+        if not y.dot(y) <= 1.0:
+            text = self._jump(last, sample)
+            if text is not None and not self._is_confirmed(sample, text):
+                return text
+        self._last, self._refused = sample, None
         return None
 
-    def _is_confirmed(self, sample: tuple[int, Array, Any], text: str) -> bool:
+    def _is_confirmed(self, sample: Sample, text: str) -> bool:
         before, self._refused = self._refused, sample
         agrees = before is not None and self._jump(before, sample) is None
         self._agreeing = self._agreeing + 1 if agrees else 1
@@ -53,17 +63,12 @@ class Watch:
         self.news = f"{text}; {AGREEING} samples agree with each other, so that it is taken as real"
         return True
 
-    def _jump(self, before: tuple[int, Array, Any], now: tuple[int, Array, Any]) -> str | None:
+    def _jump(self, before: Sample, now: Sample) -> str | None:
         """The first value that changed more than it can; None where there is none."""
-        elapsed = now[0] - before[0]
+        rule, elapsed = self._rule, now[0] - before[0]
         if elapsed <= 0:
-            return None  # a late sample: no time to compare with
-        rule = self._rule
-        change, inverse = rule.allowed(elapsed)
-        step = now[1] - before[1]
-        y = step * inverse
-        if y.dot(y) <= 1.0:
             return None
+        step, change = now[1] - before[1], rule.allowed(elapsed)
         if rule.turn is not None and now[1][rule.turn].dot(before[1][rule.turn]) < 0.0:
             step[rule.turn] = -now[1][rule.turn] - before[1][rule.turn]
         if rule.extra_slack is not None:
