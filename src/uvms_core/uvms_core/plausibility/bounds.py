@@ -48,6 +48,8 @@ SIGMAS = 6.0
 """An estimate may be corrected by this many std of its own uncertainty within a sample."""
 ESTIMATE_M = 0.5
 """And by this without any."""
+UNSEEN_M_S = 2.0
+"""And by this speed beside its own: the vehicle accelerates, and estimates of a speed are wrong."""
 NOISES = 10.0
 """Noise of a sample in std: none in a billion is beyond it, with room for what a file omits."""
 ANYTHING = 1e12
@@ -123,22 +125,23 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
     rates = np.array([scale.speed] * 3 + [scale.rate] * 3)
     return Rule(
         (
-            within("position", place, 3, "m", rate=scale.speed, slack=ESTIMATE_M),
+            within("position", place, 3, "m", rate=UNSEEN_M_S, slack=ESTIMATE_M),
             _quaternion("quaternion", scale, 0.0),
             within("nu", rates, 6, "m/s or rad/s"),
             _covariance("pose_covariance", 6),
             _covariance("twist_covariance", 6),
         ),
         quaternion="quaternion",
-        extra_slack=_own_uncertainty,
+        extra_slack=_own_motion,
     )
 
 
-def _own_uncertainty(odometry: signals.Odometry) -> Array:
-    """By how much the next estimate may be corrected (85,): its own std, in position and turn."""
+def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
+    """By how much the next estimate may differ (85,): its own speed, and its own uncertainty."""
     slack = np.zeros(3 + 4 + 6 + 36 + 36)
     std = np.sqrt(np.maximum(odometry.pose_covariance.diagonal(), 0.0))
-    slack[:3] = SIGMAS * std[:3]
+    speed = float(np.linalg.norm(odometry.nu[:3]))
+    slack[:3] = SIGMAS * std[:3] + speed * elapsed_s
     slack[3:7] = SIGMAS * 0.5 * float(np.max(std[3:]))
     return slack
 

@@ -58,15 +58,16 @@ class Rule:
     Args:
         bounds: of its fields. All of them have a size, or none has.
         quaternion: field that is the same with the opposite sign.
-        extra_slack: what a sample allows the next to jump by beyond the slack of its bounds, by
-            value, such as its own uncertainty; called only where a jump is too large without it.
+        extra_slack: by how much the next sample, so many seconds later, may jump beyond the slack
+            of the bounds, by value: a sample's own uncertainty. Called only where a jump is too
+            large without it.
     """
 
     def __init__(
         self,
         bounds: Sequence[Bound],
         quaternion: str = "",
-        extra_slack: Callable[[Any], Array] | None = None,
+        extra_slack: Callable[[Any, float], Array] | None = None,
     ) -> None:
         self.bounds = tuple(bounds)
         self.extra_slack = extra_slack

@@ -72,7 +72,7 @@ class Watch:
         if rule.turn is not None and now[1][rule.turn].dot(before[1][rule.turn]) < 0.0:
             step[rule.turn] = -now[1][rule.turn] - before[1][rule.turn]
         if rule.extra_slack is not None:
-            change = change + rule.extra_slack(before[2])
+            change = change + rule.extra_slack(before[2], 1e-9 * elapsed)
         for i, far in enumerate(abs(step) > change):
             if far:
                 return (

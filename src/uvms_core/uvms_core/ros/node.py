@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Literal, TypeVar
 
+import numpy as np
 from pydantic import Field
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -138,9 +139,10 @@ class UvmsNode(Node):
         read = self._reader(topic)
 
         def take(data: bytes) -> None:
-            signal = read(data)
-            if topic.signal is not int and topic.signal is not Status:
-                self.plausibility.admit(topic, signal)
+            with np.errstate(all="ignore"):  # what overflows is refused
+                signal = read(data)
+                if topic.signal is not int and topic.signal is not Status:
+                    self.plausibility.admit(topic, signal)
             callback(signal)
 
         self._subscribe(topic, lambda data: self.guard(lambda: take(data)))
@@ -170,13 +172,14 @@ class UvmsNode(Node):
 
     def _take_in(self, intake: Intake, topic: Topic, data: bytes) -> None:
         wall = time.monotonic()
-        try:
-            signal = self._read_input(topic, data)
-        except UvmsError as fault:
-            self.refuse(self._status.stamp, [fault])
-            self._step_through(intake, intake.take_unreadable(topic, stamp_in(data)))
-        else:
-            self._step_through(intake, intake.take(topic, signal, wall))
+        with np.errstate(all="ignore"):  # what overflows is refused
+            try:
+                signal = self._read_input(topic, data)
+            except UvmsError as fault:
+                self.refuse(self._status.stamp, [fault])
+                self._step_through(intake, intake.take_unreadable(topic, stamp_in(data)))
+            else:
+                self._step_through(intake, intake.take(topic, signal, wall))
         if self._watchdog.is_due(wall):
             self.on_wake()
 
