@@ -9,6 +9,7 @@ import traceback
 from abc import ABC, abstractmethod
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
+from itertools import groupby
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,10 @@ from uvms_core.topics import Topic
 
 Output = tuple[Topic, Any]
 """A topic and the signal that goes out on it."""
+
+
+def _name(output: Output) -> str:
+    return output[0].name
 
 
 class Part(ABC):
@@ -81,6 +86,9 @@ class Part(ABC):
 class InProcess:
     """Hands signals to parts and calls them, without ROS and without waiting.
 
+    What overflows is refused; a caller that wants no warnings of numpy about it puts
+    `np.errstate(all="ignore")` around its ticks, as nodes do.
+
     Args:
         parts: by role; they are called in the order in which their inputs come to be.
         plausibility: of what comes from outside and of what the parts put out; None: no checks.
@@ -102,6 +110,21 @@ class InProcess:
         """Signals from outside that were not used."""
         self.unsafe = 0
         """Ticks at which a part made rubbish and its safe output was used instead."""
+
+    def admit_all(self, outputs: Iterable[Output]) -> None:
+        """Hand over signals from outside, as `admit` does."""
+        for name, group in groupby(outputs, key=_name):
+            if name not in self._rules:
+                continue
+            kinds, signals = zip(*group, strict=True)
+            take = self.deliver if self._are_good(kinds[0], signals) else self.admit
+            for signal in signals:
+                take(kinds[0], signal)
+
+    def _are_good(self, topic: Topic, signals: Sequence[Any]) -> bool:
+        if self._plausibility is None:
+            return True
+        return len(signals) > 1 and self._plausibility.are_good(topic, signals)
 
     def admit(self, topic: Topic, signal: Any) -> None:
         """Hand over a signal from outside, unless this vehicle cannot have it."""
@@ -169,22 +192,21 @@ def safe_step(
     Raises:
         PluginError: the step fails in any other way.
     """
-    with np.errstate(all="ignore"):  # rubbish is found and reported below
-        try:
-            if tick.missing:
-                raise SignalError(f"no usable {' and no '.join(tick.missing)}")
-            outputs = run_step(role, part, tick)
-        except (PlantDiverged, PluginError):
-            raise
-        except UnsafeOutputError as fault:
-            return _fall_back(part, tick, plausibility, fault), fault
-        except UvmsError as fault:
-            return _possible(part.safe(tick), plausibility), fault
-        for topic, signal in outputs:
-            if text := plausibility.fault(topic, signal):
-                unsafe = UnsafeOutputError(f"{role} made rubbish and begins anew: {text}")
-                return _fall_back(part, tick, plausibility, unsafe), unsafe
-        return outputs, None
+    try:
+        if tick.missing:
+            raise SignalError(f"no usable {' and no '.join(tick.missing)}")
+        outputs = run_step(role, part, tick)
+    except (PlantDiverged, PluginError):
+        raise
+    except UnsafeOutputError as fault:
+        return _fall_back(part, tick, plausibility, fault), fault
+    except UvmsError as fault:
+        return _possible(part.safe(tick), plausibility), fault
+    for topic, signal in outputs:
+        if text := plausibility.fault(topic, signal):
+            unsafe = UnsafeOutputError(f"{role} made rubbish and begins anew: {text}")
+            return _fall_back(part, tick, plausibility, unsafe), unsafe
+    return outputs, None
 
 
 def _fall_back(

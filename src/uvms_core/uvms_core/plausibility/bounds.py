@@ -58,6 +58,8 @@ ANYTHING = 1e12
 
 def bounds_of(vehicle: Vehicle, topic: Topic) -> Rule:
     """The rule of a topic; one of finite numbers alone where its signal is not ours."""
+    if topic.signal in _FOR_THE_LOG:
+        return Rule(())
     make = _RULES.get(topic.signal) if topic.signal is not None else None
     if topic.name in _BY_TOPIC:
         make = _BY_TOPIC[topic.name]
@@ -158,28 +160,12 @@ def _disturbance(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule((within("wrench", _load(scale), 6, "N or N m"),))
 
 
-def _budget(vehicle: Vehicle, scale: Scale) -> Rule:
-    parts = ("restoring", "coupling", "external")
-    return Rule(tuple(within(name, _load(scale), 6, "N or N m") for name in parts))
-
-
 def _joint_command(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule((within("effort", ASKED * scale.effort, vehicle.n_joints, "N m"),))
 
 
 def _thruster_command(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule((within("thrust", ASKED * scale.force, vehicle.n_thrusters, "N"),))
-
-
-def _allocation(vehicle: Vehicle, scale: Scale) -> Rule:
-    asked = _wrench((ASKED + 2.0) * scale.force, scale)
-    return Rule(
-        (
-            within("thrust", ASKED * scale.force, vehicle.n_thrusters, "N"),
-            within("achieved", asked, 6, "N or N m"),
-            within("residual", asked, 6, "N or N m"),
-        )
-    )
 
 
 def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -243,12 +229,12 @@ _RULES: dict[Any, _Maker] = {
     signals.GpsSample: _gps,
     signals.JointStates: _joints,
     signals.Odometry: _odometry,
-    signals.DisturbanceBudget: _budget,
     signals.JointCommand: _joint_command,
     signals.ThrusterCommand: _thruster_command,
-    signals.Allocation: _allocation,
     signals.Reference: _reference,
 }
+_FOR_THE_LOG = (signals.Allocation, signals.DisturbanceBudget)
+"""No node reads them: that they are finite is enough."""
 _BY_TOPIC: dict[str, _Maker] = {
     "wrench_command": _command,
     "wrench_achieved": _achieved,

@@ -1,5 +1,6 @@
 """All topics of a vehicle against their bounds: what comes in with jumps, what goes out without."""
 
+from collections.abc import Sequence
 from typing import Any
 
 from uvms_core import checks
@@ -44,6 +45,11 @@ class Plausibility:
         news, watch.news = watch.news, None
         return f"{topic.name}: {news}"
 
+    def are_good(self, topic: Topic, signals: Sequence[Any]) -> bool:
+        """Take several samples in a row if all are certainly good; else none of them."""
+        watch = self._watches.get(topic.name)
+        return watch is not None and watch.are_good(signals)
+
     def fault(self, topic: Topic, signal: Any) -> str | None:
         """Why a signal must not go out, in words; None where it may, which marks it as checked."""
         rule = self._rules.get(topic.name) or self._rule(topic)
@@ -51,10 +57,10 @@ class Plausibility:
             checks.check(topic.name, signal)
         except SignalError as fault:
             return str(fault)
-        if rule.is_flat and rule.is_possible(rule.flat(signal)):
+        if not rule.bounds or (rule.is_flat and rule.is_possible(rule.flat(signal))):
             return None
-        fault = rule.explain(signal)
-        return fault and f"{topic.name}: {fault}"
+        text = rule.explain(signal)
+        return text and f"{topic.name}: {text}"
 
     def _rule(self, topic: Topic) -> Rule:
         if topic.name not in self._rules:

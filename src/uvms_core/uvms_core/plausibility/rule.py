@@ -77,11 +77,13 @@ class Rule:
         self._get = attrgetter(*(bound.field for bound in bounds))
         self._single = len(bounds) == 1
         self._scalar = all(bound.size == 1 for bound in bounds)
-        self._straight = not any(bound.is_matrix for bound in bounds)
+        self._straight = not (self._single or self._scalar) and not any(
+            bound.is_matrix for bound in bounds
+        )
         self.low, self.high = self._column("low"), self._column("high")
         self.rate, self.slack = self._column("rate"), self._column("slack")
         self._middle = 0.5 * (self.low + self.high)
-        self._scale = 2.0 / (self.high - self.low)
+        self.scale = 2.0 / (self.high - self.low)
         self._centred = not self._middle.any()
         self.jumps = bool(np.isfinite(self.rate).any())
         self.labels = [
@@ -104,9 +106,21 @@ class Rule:
             return np.concatenate(values)
         return np.concatenate([value.ravel() for value in values])
 
+    @property
+    def is_quick(self) -> bool:
+        """Whether several samples can be tested at once."""
+        return self.is_flat and self.jumps and self._centred and self._straight
+
+    def rows(self, first: Array, signals: Sequence[Any]) -> Array:
+        """A flat array and those of several signals below it, a row each."""
+        values = [first]
+        for signal in signals:
+            values.extend(self._get(signal))
+        return np.concatenate(values).reshape(-1, first.size)
+
     def is_possible(self, x: Array) -> bool:
         """Whether all values are within their bounds; False for NaN."""
-        y = x * self._scale if self._centred else (x - self._middle) * self._scale
+        y = x * self.scale if self._centred else (x - self._middle) * self.scale
         return y.dot(y) <= 1.0 or bool(((x >= self.low) & (x <= self.high)).all())
 
     def allowed(self, elapsed: int) -> Array:

@@ -1,6 +1,10 @@
 """A stream of samples of one topic against its rule: single values, and jumps between samples."""
 
+from collections.abc import Sequence
+from itertools import pairwise
 from typing import Any
+
+import numpy as np
 
 from uvms_core.plausibility.rule import Rule
 from uvms_core.signals import Array
@@ -53,6 +57,26 @@ class Watch:
                 return text
         self._last, self._refused = sample, None
         return None
+
+    def are_good(self, signals: Sequence[Any]) -> bool:
+        """Whether a run of samples is certainly good, which makes its last one the last one.
+
+        One product for all of them; where it does not hold they are to be looked at one by one.
+        """
+        rule, last = self._rule, self._last
+        if last is None or not rule.is_quick:
+            return False
+        stamps = [last[0], *(signal.stamp for signal in signals)]
+        elapsed = stamps[1] - stamps[0]
+        if elapsed <= 0 or any(b - a != elapsed for a, b in pairwise(stamps)):
+            return False
+        x = rule.rows(last[1], signals)
+        y = x * rule.scale
+        step = (x[1:] - x[:-1]) * rule.inverse(elapsed)
+        if not (np.vdot(y, y) <= 1.0 and np.vdot(step, step) <= 1.0):
+            return False
+        self._last, self._refused = (stamps[-1], x[-1], signals[-1]), None
+        return True
 
     def _is_confirmed(self, sample: Sample, text: str) -> bool:
         before, self._refused = self._refused, sample

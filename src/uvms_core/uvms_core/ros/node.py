@@ -220,7 +220,8 @@ class UvmsNode(Node):
         self._watchdog.due = wall + LOOK_S
         if intake is None:
             return
-        self.guard(lambda: self._step_through(intake, intake.poll(wall)))
+        with np.errstate(all="ignore"):
+            self.guard(lambda: self._step_through(intake, intake.poll(wall)))
         level = self._watchdog.silent_level(wall)
         if level is not None:
             self.report(intake.timeline.now or 0, level, self._waiting(intake))
