@@ -57,7 +57,9 @@ class Plausibility:
             checks.check(topic.name, signal)
         except SignalError as fault:
             return str(fault)
-        if not rule.bounds or (rule.is_flat and rule.is_possible(rule.flat(signal))):
+        if not rule.bounds:
+            return None
+        if rule.is_possible(rule.flat(signal)) if rule.is_flat else rule.are_possible(signal):
             return None
         text = rule.explain(signal)
         return text and f"{topic.name}: {text}"

@@ -73,6 +73,12 @@ class Rule:
         self.extra_slack = extra_slack
         self.is_flat = all(bound.size for bound in bounds) and bool(bounds)
         if not self.is_flat:
+            self._by_field = [
+                (bound.field, 0.5 * (high + low), 2.0 / (high - low))
+                for bound in bounds
+                if not bound.only_if
+                for low, high in [(np.asarray(bound.low), np.asarray(bound.high))]
+            ]
             return
         self._get = attrgetter(*(bound.field for bound in bounds))
         self._single = len(bounds) == 1
@@ -122,6 +128,16 @@ class Rule:
         """Whether all values are within their bounds; False for NaN."""
         y = x * self.scale if self._centred else (x - self._middle) * self.scale
         return y.dot(y) <= 1.0 or bool(((x >= self.low) & (x <= self.high)).all())
+
+    def are_possible(self, signal: Any) -> bool:
+        """Whether the fields of a signal of no fixed size are certainly within their bounds."""
+        if any(bound.only_if for bound in self.bounds):
+            return False
+        for field, middle, scale in self._by_field:
+            y = (getattr(signal, field) - middle) * scale
+            if not np.vdot(y, y) <= 1.0:
+                return False
+        return True
 
     def allowed(self, elapsed: int) -> Array:
         """Largest change over a time in ns."""

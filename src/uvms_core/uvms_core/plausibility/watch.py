@@ -37,7 +37,7 @@ class Watch:
         """Why a sample cannot be used, in words; None where it can, which makes it the last one."""
         rule = self._rule
         if not rule.is_flat:
-            return rule.explain(signal)
+            return None if rule.are_possible(signal) else rule.explain(signal)
         x = rule.flat(signal)
         if not rule.is_possible(x):
             return rule.explain(signal)
