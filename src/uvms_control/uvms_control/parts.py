@@ -19,6 +19,7 @@ class ControllerPart(Part):
 
     trigger = topics.ODOMETRY
     outputs = topics.NODES[topics.CONTROLLER].outputs
+    left_to_reader = (topics.JOINT_COMMAND,)  # the plant has brakes
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig) -> None:
         self._vehicle, self._config = vehicle, config

@@ -39,6 +39,8 @@ class Part(ABC):
         trigger: the input whose stamps are the ticks.
         every: only stamps at multiples of this are ticks, ns.
         in_loop: whether the plant waits for its answer (see `TickGate`).
+        left_to_reader: safe outputs that its node does not publish in real time: whoever reads
+            them holds the last one for a while and then goes to a better safe state of its own.
     """
 
     inputs: Mapping[Topic, Input]
@@ -46,6 +48,7 @@ class Part(ABC):
     trigger: Topic
     every: int = 1
     in_loop: bool = True
+    left_to_reader: Sequence[Topic] = ()
 
     @abstractmethod
     def step(self, tick: Tick) -> Iterable[Output]:

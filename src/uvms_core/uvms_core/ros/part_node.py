@@ -35,8 +35,10 @@ class PartNode(UvmsNode):
         """Step the part and publish; samples that it left out are reported."""
         began = time.perf_counter()
         outputs, fault = safe_step(self.role, self.part, tick, self.plausibility)
+        silent = () if fault is None or self.lockstep else self.part.left_to_reader
         for topic, signal in outputs:
-            self.send(topic, signal)
+            if topic not in silent:
+                self.send(topic, signal)
         self.step_ms = 1e3 * (time.perf_counter() - began)
         if isinstance(fault, UnsafeOutputError):
             self.unsafe_outputs += 1
