@@ -7,10 +7,13 @@ from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
+import numpy as np
+
 from uvms_bringup.scenario import Scenario
 from uvms_control.parts import AllocatorPart, ControllerPart
 from uvms_core import topics
 from uvms_core.part import InProcess, Output, Part
+from uvms_core.plausibility import Plausibility
 from uvms_core.signals import (
     Allocation,
     DisturbanceBudget,
@@ -111,7 +114,7 @@ class Loop:
     def __init__(self, scenario: Scenario, vehicle: Vehicle) -> None:
         self.plant = Plant(vehicle, scenario.plant, scenario.seed)
         self.parts = make_parts(scenario, vehicle)
-        self._process = InProcess(self.parts)
+        self._process = InProcess(self.parts, Plausibility(vehicle))
         self._sensor_topics = in_order_of_publication(vehicle)
         _spare_the_garbage_collector()
 
@@ -124,14 +127,14 @@ class Loop:
         """Everything that the graph computes at the plant's present stamp."""
         stamp, sensors, truth = self.plant.stamp, self.plant.sense(), self.plant.truth()
         outputs = list(plant_outputs(stamp, sensors, truth, self._sensor_topics))
-        for topic, signal in outputs[1:]:  # the clock is a stamp, not a signal
-            self._process.deliver(topic, signal)
         step_ms: dict[str, float] = {}
-        began = time.perf_counter()
-        for role, own in self._process.tick(stamp):
-            ended = time.perf_counter()
-            step_ms[role], began = 1e3 * (ended - began), ended
-            outputs += own
+        with np.errstate(all="ignore"):  # what overflows is refused, and is no news
+            self._process.admit_all(outputs[1:])  # the clock is a stamp, not a signal
+            began = time.perf_counter()
+            for role, own in self._process.tick(stamp):
+                ended = time.perf_counter()
+                step_ms[role], began = 1e3 * (ended - began), ended
+                outputs += own
         plan = self.parts[topics.MOTION_PLANNER].plan if topics.MOTION_PLANNER in step_ms else None  # type: ignore[attr-defined]
         return LoopTick(stamp, sensors, truth, outputs, step_ms, plan)
 

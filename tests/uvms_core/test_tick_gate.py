@@ -131,3 +131,67 @@ def test_a_trigger_faster_than_the_ticks():
     ticks = [tick for some in released for tick in some]
     assert [tick.stamp for tick in ticks] == [0, DT, 2 * DT]
     assert ticks[1]["imu"] == (10, 20, 30, 40, 50)
+
+
+@dataclass(frozen=True)
+class Sample:
+    stamp: int
+    value: str = ""
+
+
+def test_samples_out_of_order_are_put_in_their_place_and_repeated_ones_dropped():
+    gated = TickGate({"imu": Periodic(10)}, "imu", lockstep=True, every=DT)
+    gated.push("imu", 0, 0)
+    for when in (20, 10, 10, 40, 30):
+        gated.push("imu", when, when)
+    (tick,) = gated.push("imu", DT, DT)
+    assert tick["imu"] == (10, 20, 30, 40, 50)
+    assert gated.duplicates == 1
+
+
+def test_an_excused_input_is_held_as_of_the_tick_until_it_is_too_old():
+    second = 1_000_000_000
+    step = second // 20
+    gated = TickGate({"a": Same(), "b": Same()}, "a", lockstep=True)
+    gated.push("a", 0, Sample(0, "good"))
+    gated.push("b", 0, Sample(0))
+    for k in range(1, 15):
+        assert gated.push("b", k * step, Sample(k * step)) == []
+        (tick,) = gated.excuse("a", k * step)
+        if k * step <= second // 2:
+            assert tick["a"] == Sample(k * step, "good")
+            assert tick.missing == ()
+        else:
+            assert tick.missing == ("a",)
+
+
+def test_a_good_trigger_behind_a_refused_one_of_the_same_stamp_is_kept_for_the_next():
+    gated = TickGate({"a": Same()}, "a", lockstep=False)
+    gated.push("a", 0, Sample(0, "first"))
+    gated.excuse("a", DT)
+    assert gated.push("a", DT, Sample(DT, "second")) == []
+    (tick,) = gated.excuse("a", 2 * DT)
+    assert tick["a"] == Sample(2 * DT, "second")
+
+
+def test_a_node_that_starts_late_does_not_wait_for_what_it_missed():
+    gated = TickGate({"imu": Periodic(10), "slow": Periodic(1000)}, "imu", True, every=DT)
+    (tick,) = gated.push("imu", 301 * DT, "i")
+    assert tick.stamp == 301 * DT
+
+
+def test_after_a_reset_time_may_begin_anew():
+    gated = gate()
+    for name, when in tick_inputs(0):
+        gated.push(name, when, None)
+    gated.reset()
+    released = [gated.push(name, when, None) for name, when in tick_inputs(0)]
+    assert [len(each) for each in released] == [0, 0, 0, 1]
+
+
+def test_the_gate_says_what_it_waits_for():
+    gated = TickGate({"a": Same(), "b": Same()}, "a", lockstep=False)
+    assert gated.waiting() == ["a"]
+    gated.push("a", 0, None)
+    gated.push("a", DT, Sample(DT))
+    assert gated.waiting() == ["b"]

@@ -1,0 +1,152 @@
+"""Bounds of signals, which the vehicle file gives, and of jumps between samples."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import uvms_core
+from uvms_core import topics
+from uvms_core.errors import ImplausibleError
+from uvms_core.plausibility import AGREEING, Plausibility, bounds_of
+from uvms_core.signals import (
+    GpsSample,
+    ImuSample,
+    JointStates,
+    Odometry,
+    PressureSample,
+    Wrench,
+)
+from uvms_core.vehicle import load_vehicle
+
+VEHICLE = load_vehicle()
+N = VEHICLE.n_joints
+LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
+S = 1_000_000_000
+DT = S // 20
+
+
+def odometry(stamp=0, position=(0.0, 0.0, 10.0), nu=(0.0,) * 6, std=0.01, quaternion=LEVEL):
+    covariance = std**2 * np.eye(6)
+    return Odometry(stamp, np.array(position), quaternion, np.array(nu), covariance, covariance)
+
+
+def joints(stamp=0, **fields):
+    still = JointStates(stamp, np.radians([0.0, 30.0, 60.0, 0.0]), np.zeros(N), np.zeros(N))
+    return replace(still, **fields)
+
+
+IMU = ImuSample(0, LEVEL, np.zeros(3), np.array([0.0, 0.0, -9.81]), np.eye(3), np.eye(3), np.eye(3))
+BAD = [
+    (topics.ODOMETRY, odometry(nu=np.full(6, 1e3)), "odometry: nu[0] is 1000 m/s or rad/s"),
+    (topics.ODOMETRY, odometry(position=(0.0, 1e30, 0.0)), "odometry: position[1] is 1e+30 m"),
+    (topics.ODOMETRY, odometry(std=1e15), "odometry: pose_covariance[0, 0] is 1e+30"),
+    (topics.JOINT_STATES, joints(velocity=np.full(N, 100.0)), "joint_states: velocity[0] is 100"),
+    (topics.JOINT_STATES, joints(position=np.full(N, -20.0)), "joint_states: position[0] is -20"),
+    (topics.JOINT_STATES, joints(effort=np.full(N, 1e9)), "joint_states: effort[0] is 1e+09 N m"),
+    (topics.IMU, replace(IMU, angular_velocity=np.full(3, 100.0)), "angular_velocity[0] is 100"),
+    (topics.IMU, replace(IMU, linear_acceleration=np.full(3, 1e4)), "linear_acceleration[0] is"),
+    (topics.PRESSURE, PressureSample(0, 0.0, 1.0), "pressure is 0 Pa; possible for this vehicle"),
+    (topics.PRESSURE, PressureSample(0, 1e9, 1.0), "pressure is 1e+09 Pa"),
+    (topics.GPS, GpsSample(0, True, 91.0, 0.0, 0.0, np.eye(3)), "latitude_deg is 91 deg"),
+    (topics.WRENCH_COMMAND, Wrench(0, np.full(6, 1e30)), "wrench[0] is 1e+30"),
+    (topics.DISTURBANCE, Wrench(0, np.full(6, -1e30)), "wrench[0] is -1e+30"),
+]
+
+
+@pytest.mark.parametrize(("topic", "signal", "text"), BAD, ids=lambda each: str(each)[:30])
+def test_what_is_impossible_is_named_with_its_bound(topic, signal, text):
+    with pytest.raises(ImplausibleError) as fault:
+        Plausibility(VEHICLE).admit(topic, signal)
+    assert text in str(fault.value)
+    assert "possible for this vehicle is" in str(fault.value)
+
+
+def test_a_gps_without_a_fix_may_be_anywhere():
+    nan = float("nan")
+    assert (
+        Plausibility(VEHICLE).admit(topics.GPS, GpsSample(0, False, nan, nan, nan, np.eye(3)))
+        is None
+    )
+
+
+def test_a_jump_is_refused_until_samples_agree():
+    plausible = Plausibility(VEHICLE)
+    plausible.admit(topics.ODOMETRY, odometry(0))
+    for k in range(1, AGREEING):
+        with pytest.raises(ImplausibleError, match=r"position\[0\] jumps by 20 m"):
+            plausible.admit(topics.ODOMETRY, odometry(k * DT, position=(20.0, 0.0, 10.0)))
+    news = plausible.admit(topics.ODOMETRY, odometry(AGREEING * DT, position=(20.0, 0.0, 10.0)))
+    assert "taken as real" in news
+    assert plausible.admit(topics.ODOMETRY, odometry(7 * DT, position=(20.0, 0.0, 10.0))) is None
+
+
+def test_outliers_that_do_not_agree_are_never_taken():
+    plausible = Plausibility(VEHICLE)
+    rng = np.random.default_rng(2)
+    plausible.admit(topics.ODOMETRY, odometry(0))
+    for k in range(1, 60):
+        with pytest.raises(ImplausibleError):
+            plausible.admit(
+                topics.ODOMETRY,
+                odometry(k * DT, position=rng.choice([-1, 1], 3) * (1e3 + k * 50.0)),
+            )
+
+
+def test_an_estimate_may_be_corrected_by_its_own_uncertainty():
+    plausible = Plausibility(VEHICLE)
+    plausible.admit(topics.ODOMETRY, odometry(0, std=10.0))
+    assert plausible.admit(topics.ODOMETRY, odometry(DT, position=(40.0, 0.0, 10.0))) is None
+
+
+def test_the_other_sign_of_a_quaternion_is_no_jump():
+    plausible = Plausibility(VEHICLE)
+    plausible.admit(topics.ODOMETRY, odometry(0))
+    assert plausible.admit(topics.ODOMETRY, odometry(DT, quaternion=-LEVEL)) is None
+
+
+def test_several_samples_at_once_are_judged_as_one_by_one():
+    """The quick test takes nothing that the slow one would refuse, and misses no jump."""
+    rng = np.random.default_rng(4)
+    for _ in range(300):
+        scale = 10.0 ** rng.uniform(-2, 3)
+        samples = [
+            replace(
+                IMU,
+                stamp=k * S // 100,
+                angular_velocity=rng.normal(size=3) * scale,
+                quaternion=_turned(rng.normal() * scale * 0.01),
+            )
+            for k in range(1, 6)
+        ]
+        slow, quick = Plausibility(VEHICLE), Plausibility(VEHICLE)
+        for each in (slow, quick):
+            each.admit(topics.IMU, IMU)
+        if quick.are_good(topics.IMU, samples):
+            assert all(slow.admit(topics.IMU, sample) is None for sample in samples)
+
+
+def _turned(angle):
+    return np.array([0.0, 0.0, np.sin(angle / 2), np.cos(angle / 2)])
+
+
+@given(st.floats(allow_nan=True, allow_infinity=True), st.integers(0, 5))
+def test_the_quick_test_agrees_with_the_bounds(value, index):
+    rule = bounds_of(VEHICLE, topics.WRENCH_COMMAND)
+    wrench = np.zeros(6)
+    wrench[index] = value
+    with np.errstate(all="ignore"):
+        possible = rule.is_possible(rule.flat(Wrench(0, wrench)))
+    assert possible == bool(rule.low[index] <= value <= rule.high[index])
+
+
+@pytest.mark.parametrize("name", ["reference_auv", "bluerov2_alpha5"])
+def test_every_topic_of_the_loop_has_bounds_for_every_vehicle(name):
+    vehicle = load_vehicle(Path(uvms_core.__file__).parent / "vehicles" / f"{name}.yaml")
+    for own in topics.NODES.values():
+        for topic in own.inputs:
+            if topic is not topics.CLOCK:
+                assert bounds_of(vehicle, topic).bounds, topic.name
