@@ -16,8 +16,8 @@ Rows = tuple[tuple[float, ...], ...]
 _TOLERANCE = 1e-9  # relative; values in files are rounded decimals or full doubles
 
 PRINTED = 1e-3
-"""Relative difference that is taken for rounding in a printed table, which has three digits or more:
-0.707 for the half of a right angle, 10.774 opposite 10.775. It is evened out, and noted."""
+"""Relative difference that is taken for rounding in a printed table, which has three digits or
+more, such as 0.707 for a half right angle, or 10.774 opposite 10.775. It is evened out and noted."""
 
 _EXACT_UNIT = 1e-6  # a length as near to one as this is left as it is
 

@@ -11,6 +11,7 @@ acceleration of exactly zero, and the rest of the vehicle the motion with that j
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
@@ -24,6 +25,8 @@ from uvms_dynamics.simulation.integrator import (
     System,
     advance,
 )
+
+Flags = NDArray[np.bool_]
 
 _EVENTS_A_JOINT = 4
 """How often a step is cut for a joint that comes to rest; after that all that rest are held."""
@@ -89,7 +92,7 @@ class Brakes:
             self._lock(held)
         return effort
 
-    def _lock(self, held: Array) -> None:
+    def _lock(self, held: Flags) -> None:
         rows = slice(1, 1 + self._n)
         rotor = self._system.model[rows, ROTOR]
         self._locked.model[rows, ROTOR] = np.where(held, np.inf, rotor)
@@ -127,11 +130,12 @@ class Brakes:
         x[JOINTS + self._n : JOINTS + 2 * self._n][rest] = 0.0
         return past
 
-    def _try(self, x: Array, start: Array, thrust: Array, effort: Array, step: float) -> Array:
-        """x becomes the state after a step from the start; which joints (n,) have turned back."""
+    def _try(self, x: Array, start: Array, thrust: Array, effort: Array, step: float) -> Flags:
+        """Set x to the state a step after the start; which joints (n,) have turned back by then."""
         x[:] = start
         self._integrate(x, thrust, effort, step, steps=1)
-        return x[JOINTS + self._n : JOINTS + 2 * self._n] * effort > 0.0
+        turned_back: Flags = x[JOINTS + self._n : JOINTS + 2 * self._n] * effort > 0.0
+        return turned_back
 
     def _integrate(self, x: Array, thrust: Array, effort: Array, step: float, steps: int) -> None:
         rows = slice(0, steps + 1)

@@ -88,8 +88,8 @@ class Plant:
     def step(self, thruster: ThrusterCommand | None, joints: JointCommand | None) -> None:
         """Advance by one control period under constant commands, cut at the drives' limits.
 
-        None is the safe state, where there is no command to use: no thrust, no torque of the drives,
-        and the brakes of those joints engaged that have one.
+        None is the safe state, where there is no command to use: no thrust; no torque of the
+        drives, and those joints braked that have a brake.
 
         Raises SignalError for a command of wrong size or that is not finite (the plant then does
         not move), PlantDiverged where the state is no longer finite.
