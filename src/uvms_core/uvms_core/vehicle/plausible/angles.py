@@ -45,7 +45,9 @@ def _turns(path: str, name: str, value: float) -> Iterator[Finding]:
         return
     endless = name in _LIMITS
     why = "a joint that turns for ever?" if endless else "is it in another unit?"
-    yield Finding(path, f"{value:g} degrees are more than two turns, {TWO_TURNS:g}; {why}", not endless)
+    yield Finding(
+        path, f"{value:g} degrees are more than two turns, {TWO_TURNS:g}; {why}", not endless
+    )
 
 
 def _radians(path: str, value: float) -> Iterator[Finding]:

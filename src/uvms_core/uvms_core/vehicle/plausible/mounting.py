@@ -10,7 +10,8 @@ from uvms_core.vehicle.plausible.finding import Finding, graded
 from uvms_core.vehicle.vehicle import Vehicle
 
 OUTSIDE_ODD, OUTSIDE_IMPOSSIBLE = 2.0, 20.0
-"""Distance from the body origin over the hull's half diagonal: twice is a mast or a boom."""
+"""Distance from the body origin over the half diagonal of hull and thrusters: twice is a mast or a
+boom, and a hundred is centimetres."""
 
 ARM_ODD, ARM_IMPOSSIBLE = 10.0, 200.0
 """Length of the arm over the hull's: a thousand is millimetres."""

@@ -12,8 +12,9 @@ from uvms_core.vehicle.vehicle import Vehicle
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 
-FAR_ODD, FAR_IMPOSSIBLE = 2.0, 10.0
-"""Distance of a thruster from the body origin over the hull's half diagonal."""
+FAR_ODD, FAR_IMPOSSIBLE = 2.0, 50.0
+"""Distance of a thruster from the body origin over the hull's half diagonal: thin outriggers reach
+many sizes of a small hull, and a hundred is centimetres."""
 
 SPAN = 1e-6
 """Part of an axis outside the span of the thrusters that counts, with lengths scaled to the hull's:

@@ -57,7 +57,8 @@ def _gravity(value: float) -> Iterator[Finding]:
         )
     elif value > NONE and not low <= value <= high:
         yield Finding(
-            field, f"{value:g} m/s^2 is outside {low:g} to {high:g}, what there is at the Earth's sea"
+            field,
+            f"{value:g} m/s^2 is outside {low:g} to {high:g}, what there is at the Earth's sea",
         )
 
 
