@@ -83,8 +83,10 @@ def _net(newtons: float) -> str:
 
 
 def _bodies(summary: dict[str, Any]) -> Iterator[str]:
-    head = ("mass", "volume", "density", "centre of gravity", "centre of buoyancy")
-    yield f"  {'body':22}{head[0]:>9} kg {head[1]:>8} l {head[2]:>8}   {head[3]:>26}   {head[4]:>26}"
+    yield (
+        f"  {'body':22}{'mass':>12} {'volume':>10} {'kg/m^3':>8}"
+        f"   {'centre of gravity, m':>26}   {'centre of buoyancy, m':>26}"
+    )
     for name, body in {"hull": summary["hull"], **summary["links"]}.items():
         yield (
             f"    {name:20}{body['mass_kg']:>9.4g} kg {1000.0 * body['volume_m3']:>8.4g} l"
@@ -135,8 +137,8 @@ def _joints(summary: dict[str, Any]) -> Iterator[str]:
         brake = f"{joint['brake_nm']:.4g}" if joint["brake_nm"] else "none"
         yield (
             f"    {name:24}{_torque(joint['static_torque_nm']):>15.3g}"
-            f" {_torque(joint['static_torque_anywhere_nm']):>10.3g} {joint['effort_limit_nm']:>10.4g}"
-            f" {brake:>10}"
+            f" {_torque(joint['static_torque_anywhere_nm']):>10.3g}"
+            f" {joint['effort_limit_nm']:>10.4g} {brake:>10}"
         )
 
 

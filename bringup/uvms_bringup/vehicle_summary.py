@@ -88,7 +88,7 @@ def _speeds(vehicle: Vehicle) -> dict[str, float]:
 
 
 def _joints(vehicle: Vehicle) -> dict[str, dict[str, float]]:
-    """Greatest static torque in the postures of the file, level, and in any posture and attitude."""
+    """Greatest static torque in the file's postures, level, and in any posture and attitude."""
     level = np.max([np.abs(joint_loads(vehicle, q)) for _, q in postures(vehicle)], axis=0)
     worst = np.max([worst_joint_loads(vehicle, q) for q in _sampled(vehicle)], axis=0)
     return {

@@ -17,7 +17,7 @@ _TOLERANCE = 1e-9  # relative; values in files are rounded decimals or full doub
 
 PRINTED = 1e-3
 """Relative difference that is taken for rounding in a printed table, which has three digits or
-more, such as 0.707 for a half right angle, or 10.774 opposite 10.775. It is evened out and noted."""
+more, such as 0.707 for a half right angle, or 10.774 opposite 10.775. It is evened out."""
 
 _EXACT_UNIT = 1e-6  # a length as near to one as this is left as it is
 
