@@ -1,4 +1,4 @@
-"""What the loader took for the rounding of print: where a value differs from the one in the file."""
+"""What the loader took for the rounding of print, and evened out."""
 
 import math
 from collections.abc import Iterator, Mapping, Sequence

@@ -13,7 +13,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_core.signals import Array
+from uvms_core.vehicle.arm import Link
 from uvms_core.vehicle.frames import Pose, arm_frames, joint_frames
+from uvms_core.vehicle.hull import Hull
 from uvms_core.vehicle.vehicle import Vehicle
 
 LEVEL = np.array([0.0, 0.0, 1.0])
@@ -51,7 +53,7 @@ class Equilibrium:
 
 def buoyancy(vehicle: Vehicle) -> Buoyancy:
     """Masses and net weight of vehicle and arm, all under water."""
-    bodies = (vehicle.hull, *vehicle.arm.links)
+    bodies: tuple[Hull | Link, ...] = (vehicle.hull, *vehicle.arm.links)
     environment = vehicle.environment
     mass = sum(body.mass_kg for body in bodies)
     displaced = environment.water_density_kg_m3 * sum(body.volume_m3 for body in bodies)
@@ -106,7 +108,7 @@ def _wet_bodies(vehicle: Vehicle, q: Array) -> list[tuple[float, Array]]:
     environment = vehicle.environment
     g, density = environment.gravity_m_s2, environment.water_density_kg_m3
     poses: list[Pose] = [(np.zeros(3), np.eye(3)), *arm_frames(vehicle.arm, q)[1:]]
-    bodies: tuple = (vehicle.hull, *vehicle.arm.links)
+    bodies: tuple[Hull | Link, ...] = (vehicle.hull, *vehicle.arm.links)
     result = []
     for body, (origin, rotation) in zip(bodies, poses, strict=True):
         weight, lift = body.mass_kg * g, density * body.volume_m3 * g

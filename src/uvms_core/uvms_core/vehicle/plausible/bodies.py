@@ -35,14 +35,14 @@ OUTSIDE_ODD, OUTSIDE_IMPOSSIBLE = 1.0, 1.5
 half as much again for what the shape leaves out."""
 
 OUTSIDE_LOOSE = 2.0
-"""The same bounds are so many times wider where there is no shape, only a size that is estimated."""
+"""The same bounds are so many times wider where there is no shape, only an estimated size."""
 
 GYRATION_ODD, GYRATION_IMPOSSIBLE = 1.0, 2.0
 """Radius of gyration over the half diagonal of the body's box: one is all mass at the corners."""
 
 SPREAD_ODD, SPREAD_IMPOSSIBLE = 8.0, 30.0
-"""The same over the radius of the sphere of its volume, without a shape: a solid rod 40 times as long
-as thick has 6."""
+"""The same over the radius of the sphere of its volume, without a shape: a solid rod 40 times as
+long as thick has 6."""
 
 COMPACT_ODD = 0.05
 """Largest moment of inertia over that of the homogeneous sphere of its volume: the mass would be
@@ -198,7 +198,7 @@ def check_added_mass(vehicle: Vehicle) -> Iterator[Finding]:
         greatest / displaced,
         MOST_WATER,
         np.inf,
-        f"{greatest:.4g} kg along one axis are more than {{bound}} times the {displaced:.4g} kg that"
-        " the hull displaces",
+        f"{greatest:.4g} kg along one axis are more than {{bound}} times the {displaced:.4g} kg"
+        " that the hull displaces",
         "spheres have half of it, cylinders as much, and only plates many times it",
     )

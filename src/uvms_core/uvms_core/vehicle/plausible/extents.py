@@ -3,9 +3,9 @@
 The file needs no shapes, so that the size of a hull or link may have to be told from other things:
 
 - hull: the half axes of `spheroid`; without it the radius of the sphere of its volume or, along
-  each axis, that of the homogeneous ellipsoid of its inertia, whichever is greater. Thrusters belong
-  to it: the box reaches to the outermost ones that are within reason. It lies about the body
-  origin, which is the hull's geometric centre.
+  each axis, that of the homogeneous ellipsoid of its inertia, whichever is greater. Thrusters
+  belong to it: the box reaches to the outermost ones that are within reason. It lies about the
+  body origin, which is the hull's geometric centre.
 - link: `cylinder`; without it, what lies within the ellipsoid of its inertia and the sphere of its
   volume from the line through its joint, its frame and the next joint or the tool.
 """

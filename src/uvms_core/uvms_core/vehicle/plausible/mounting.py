@@ -39,6 +39,7 @@ def check_mounting(vehicle: Vehicle) -> Iterator[Finding]:
         length / (2.0 * size),
         ARM_ODD,
         ARM_IMPOSSIBLE,
-        f"the arm is {length:.4g} m long, more than {{bound}} times the vehicle's {2.0 * size:.3g} m",
+        f"the arm is {length:.4g} m long, more than {{bound}} times the vehicle's"
+        f" {2.0 * size:.3g} m",
         "are its lengths in another unit?",
     )

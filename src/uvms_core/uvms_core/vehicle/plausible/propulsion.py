@@ -73,11 +73,12 @@ def _reach(vehicle: Vehicle) -> Iterator[Finding]:
     if missing := axes_out_of_reach(vehicle):
         directions = np.array([thruster.direction for thruster in vehicle.thrusters])
         parallel = bool((np.abs(directions @ directions[0]) > 1.0 - SPAN).all())
+        how = ", all along one line," if parallel else ""
         yield Finding(
             "thrusters",
-            f"the {vehicle.n_thrusters} of them{', all along one line,' if parallel else ''} cannot"
-            f" push along {', '.join(missing)} alone: the layout has rank {_span(vehicle).shape[1]},"
-            " below 6; only weight, buoyancy and damping act there",
+            f"the {vehicle.n_thrusters} of them{how} cannot push along {', '.join(missing)} alone:"
+            f" the layout has rank {_span(vehicle).shape[1]}, below 6; only weight, buoyancy and"
+            " damping act there",
         )
 
 

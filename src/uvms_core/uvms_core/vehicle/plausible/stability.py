@@ -15,7 +15,7 @@ STOWED_TILT = 10.0
 """Tilt with the arm stowed that a vehicle is usually ballasted to stay within, degrees."""
 
 POSTURE_TILT = 45.0
-"""Tilt in another posture, degrees: beyond it the arm turns the vehicle over rather than tilts it."""
+"""Tilt in another posture, degrees: beyond it the arm turns the vehicle over."""
 
 
 def check_stability(vehicle: Vehicle) -> Iterator[Finding]:

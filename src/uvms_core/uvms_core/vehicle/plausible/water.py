@@ -18,7 +18,7 @@ SEA_DENSITY = 950.0, 1260.0
 """Least and greatest of natural water, kg/m^3: boiling fresh water 958, the Dead Sea 1240."""
 
 LIQUID_DENSITY = 400.0, 2000.0
-"""Least and greatest of liquids that a vehicle could float in, kg/m^3 (methane 423, heavy brine)."""
+"""Least and greatest of liquids that a vehicle could float in, kg/m^3 (methane, heavy brine)."""
 
 VISCOSITY = 1e-7, 1e-4
 """Least and greatest, m^2/s: boiling water 2.9e-7, a hundred times cold sea water."""
