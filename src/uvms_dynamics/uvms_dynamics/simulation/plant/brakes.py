@@ -57,32 +57,35 @@ class Brakes:
         x (nx,) becomes the state at the end, rows of states and rates (steps+1, nx) those after
         each step of `step` s; thrust (m,) N.
         """
-        for k in range(len(states)):
-            if k:
-                self._step(x, thrust, step)
-            effort = self._engage(x, thrust, may_slip=True)
-            states[k], rates[k] = x, self._derivative(x, thrust, effort)
+        effort, rate = self._engage(x, thrust, may_slip=True)
+        states[0], rates[0] = x, rate
+        for k in range(1, len(states)):
+            effort, rate = self._step(x, thrust, effort, step)
+            states[k], rates[k] = x, rate
 
-    def _step(self, x: Array, thrust: Array, step: float) -> None:
-        """One step, in pieces that end where a joint comes to rest."""
+    def _step(self, x: Array, thrust: Array, effort: Array, step: float) -> tuple[Array, Array]:
+        """One step, in pieces that end where a joint comes to rest; what `_engage` says then."""
         events = _EVENTS_A_JOINT * self._n
-        while step > 0.0:
-            effort = self._engage(x, thrust, may_slip=events > 0)
+        while True:
             step -= self._until_rest(x, thrust, effort, step)
             events -= 1
+            effort, rate = self._engage(x, thrust, may_slip=step <= 0.0 or events > 0)
+            if step <= 0.0:
+                return effort, rate
 
-    def _engage(self, x: Array, thrust: Array, may_slip: bool) -> Array:
-        """Torque (n,) of the slipping brakes; the joints that are held are locked.
+    def _engage(self, x: Array, thrust: Array, may_slip: bool) -> tuple[Array, Array]:
+        """Torque (n,) of the slipping brakes, and the rate (nx,) of the state with them.
 
-        Of the joints at rest the one that is overloaded most begins to slip first, because that
-        changes the load of the others.
+        The joints that are held are locked. Of the joints at rest the one that is overloaded most
+        begins to slip first, because that changes the load of the others.
         """
         q_dot = x[JOINTS + self._n : JOINTS + 2 * self._n]
         effort = -np.sign(q_dot) * self._torque
         held = (q_dot == 0.0) & (self._torque > 0.0)
         self._lock(held)
+        rate = self._derivative(x, thrust, effort)
         while may_slip and held.any():
-            load = self._load(x, thrust, effort)
+            load = self._load(x, rate)
             excess = np.where(held, np.abs(load) - self._torque, -1.0)
             worst = int(np.argmax(excess))
             if not excess[worst] > 0.0:
@@ -90,20 +93,20 @@ class Brakes:
             held[worst] = False
             effort[worst] = np.sign(load[worst]) * self._torque[worst]
             self._lock(held)
-        return effort
+            rate = self._derivative(x, thrust, effort)
+        return effort, rate
 
     def _lock(self, held: Flags) -> None:
         rows = slice(1, 1 + self._n)
         rotor = self._system.model[rows, ROTOR]
         self._locked.model[rows, ROTOR] = np.where(held, np.inf, rotor)
 
-    def _load(self, x: Array, thrust: Array, effort: Array) -> Array:
+    def _load(self, x: Array, rate: Array) -> Array:
         """Torque (n,) that each joint needs for its motion besides friction and stops.
 
         What a brake must take where it holds.
         """
         n, model = self._n, self._system.model
-        rate = self._derivative(x, thrust, effort)
         q, q_dot = x[JOINTS : JOINTS + n], x[JOINTS + n : JOINTS + 2 * n]
         quat = x[QUATERNION:VELOCITY] / np.linalg.norm(x[QUATERNION:VELOCITY])
         nu_dot, q_ddot = rate[VELOCITY:JOINTS], rate[JOINTS + n : JOINTS + 2 * n]
