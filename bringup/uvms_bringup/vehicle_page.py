@@ -6,7 +6,7 @@ import sys
 from collections.abc import Iterator, Sequence
 from typing import Any
 
-from uvms_bringup.scenario import VEHICLE_PREFIX
+from uvms_bringup.scenario import LONGEST_ECHO, VEHICLE_PREFIX
 from uvms_bringup.vehicle_summary import vehicle_summary
 from uvms_core.errors import VehicleFileError
 from uvms_core.vehicle import examine_vehicle
@@ -37,7 +37,7 @@ def _setting(text: str) -> tuple[str, Any]:
     path, separator, value = text.partition("=")
     if not separator or not path:
         raise VehicleFileError(f"--set {text!r}: write PATH=VALUE, such as hull.mass_kg=190")
-    what = f"--set {text!r}"
+    what = f"--set {text[:LONGEST_ECHO]!r}"
     return path.removeprefix(VEHICLE_PREFIX), parse_yaml(value, what, VehicleFileError)
 
 

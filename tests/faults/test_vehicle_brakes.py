@@ -70,9 +70,7 @@ def test_a_joint_without_a_brake_moves_as_with_a_command_of_no_torque():
     for _ in range(40):
         stamp = commanded.stamp
         commanded.step(ThrusterCommand(stamp, np.zeros(7)), JointCommand(stamp, np.zeros(4)))
-    np.testing.assert_array_equal(
-        silent.truth().joints.position, commanded.truth().joints.position
-    )
+    np.testing.assert_array_equal(silent.truth().joints.position, commanded.truth().joints.position)
     assert np.abs(np.degrees(silent.truth().joints.position - STOWED)).max() > 1.0
 
 
