@@ -19,7 +19,6 @@ from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.plant.config import initial_joints, initial_joints_deg
 from uvms_planner import PathSpec
 
-
 LONGEST_RUN_S = 1e6
 """No run, and so no goal, is longer."""
 

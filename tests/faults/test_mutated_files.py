@@ -1,4 +1,4 @@
-"""Damaged vehicle and scenario files: a clear error of ours, or a vehicle that moves as it should."""
+"""Damaged vehicle and scenario files: a clear error of ours, or a vehicle that moves finitely."""
 
 import subprocess
 import sys

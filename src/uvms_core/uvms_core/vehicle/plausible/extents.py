@@ -4,8 +4,9 @@ The file needs no shapes, so that the size of a hull or link may have to be told
 
 - hull: the half axes of `spheroid`; without it, in every direction, the radius of the sphere of
   its volume or the longest half axis of the homogeneous ellipsoid of its inertia, whichever is
-  greater: lumps of mass say little about the direction in which a hull is long. Thrusters belong to it: the box reaches to the outermost ones that are within reason. It lies about the
-  body origin, which is the hull's geometric centre.
+  greater: lumps of mass say little about the direction in which a hull is long. Thrusters belong to
+  it: the box reaches to the outermost ones that are within reason. It lies about the body origin,
+  which is the hull's geometric centre.
 - link: `cylinder`; without it, what lies within the ellipsoid of its inertia and the sphere of its
   volume from the line through its joint, its frame and the next joint or the tool.
 """
@@ -52,8 +53,8 @@ def bare_hull_extent(hull: Hull) -> Extent:
     if (half := _shape_half_axes(hull)) is not None:
         return Extent(half, "the spheroid", True)
     gyration = ELLIPSOID * radii_of_gyration(hull.mass_kg, np.array(hull.inertia_kg_m2))
-    half = max(float(gyration.max()), sphere_radius(hull.volume_m3))
-    return Extent(np.full(3, half), "volume and inertia", False)
+    reach = max(float(gyration.max()), sphere_radius(hull.volume_m3))
+    return Extent(np.full(3, reach), "volume and inertia", False)
 
 
 def hull_extent(vehicle: Vehicle) -> Extent:

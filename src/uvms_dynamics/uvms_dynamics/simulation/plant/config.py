@@ -20,7 +20,6 @@ from uvms_core.vehicle.postures import (
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 
-
 Turns = Annotated[float, Field(ge=-720.0, le=720.0)]
 """An attitude in degrees: more than two turns is a mistake."""
 
