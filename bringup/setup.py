@@ -47,6 +47,7 @@ setup(
             "replay = uvms_bringup.commands.replay:COMMAND",
             "run = uvms_bringup.commands.run:COMMAND",
             "simulate = uvms_bringup.commands.simulate:COMMAND",
+            "vehicle = uvms_bringup.commands.vehicle:COMMAND",
         ],
     },
 )

@@ -1,5 +1,7 @@
 """The goal of a scenario: a path of the end effector or a motion of the joints, for any arm."""
 
+from typing import Annotated
+
 import numpy as np
 from pydantic import Field, model_validator
 
@@ -17,11 +19,14 @@ from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.plant.config import initial_joints, initial_joints_deg
 from uvms_planner import PathSpec
 
+LONGEST_RUN_S = 1e6
+"""No run, and so no goal, is longer."""
+
 
 class JointMotionSpec(Config):
     """A motion of the joints alone, from rest to rest between its points."""
 
-    times_s: tuple[float, ...] = Field(
+    times_s: tuple[Annotated[float, Field(le=LONGEST_RUN_S)], ...] = Field(
         min_length=1, description="time of each point after the start, > 0 and increasing, s"
     )
     positions_deg: tuple[JointAngles, ...] = Field(

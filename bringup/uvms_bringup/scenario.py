@@ -8,7 +8,7 @@ from typing import Any
 from pydantic import Field, ValidationInfo, field_validator
 
 from uvms_bringup.errors import ScenarioError
-from uvms_bringup.goal import Goal
+from uvms_bringup.goal import LONGEST_RUN_S, Goal
 from uvms_bringup.locate import known_scenarios
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
@@ -25,7 +25,7 @@ from uvms_observer import NavigationConfig, ObserverConfig
 from uvms_planner import PlannerConfig
 
 VEHICLE_PREFIX = "vehicle."
-LONGEST_RUN_S = 1e6
+LONGEST_ECHO = 200  # characters of a setting that an error repeats
 
 
 class Scenario(Config):
@@ -163,13 +163,18 @@ def _apply(data: dict[str, Any], setting: str) -> None:
     path, separator, text = setting.partition("=")
     if not separator or not path:
         raise ScenarioError(f"--set {setting!r}: write PATH=VALUE, such as control.observer=false")
-    value = parse_yaml(text, f"--set {setting!r}: {text!r}", ScenarioError)
+    value = parse_yaml(text, f"--set {_short(setting)!r}: {_short(text)!r}", ScenarioError)
     parents, last = _place(path)
     for parent in parents:
         data = data.setdefault(parent, {})
         if not isinstance(data, dict):
             raise ScenarioError(f"--set {setting!r}: {parent!r} is a value, not a group of values")
     data[last] = value
+
+
+def _short(text: str) -> str:
+    """The text as a message repeats it."""
+    return text if len(text) <= LONGEST_ECHO else f"{text[: LONGEST_ECHO - 3]}..."
 
 
 def _place(path: str) -> tuple[list[str], str]:

@@ -1,5 +1,7 @@
 """YAML 1.2 as people write it, one line of error with its place, and text that survives."""
 
+from pathlib import Path
+
 import pytest
 import yaml
 
@@ -89,3 +91,48 @@ def test_files_that_cannot_be_read(tmp_path):
     with pytest.raises(ConfigError) as fault:
         read_yaml(tmp_path, "it", ConfigError)
     assert str(fault.value) == "it: cannot be read: Is a directory"
+
+
+def bomb(deeper: str) -> str:
+    """Nine times the level before on each of nine lines; `deeper` has the nine aliases at {}."""
+    lines = ["a0: &a0 {x: 1}"]
+    lines += [f"a{k + 1}: &a{k + 1} {deeper.format(', '.join([f'*a{k}'] * 9))}" for k in range(8)]
+    return "{" + ", ".join(lines) + "}"
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        (bomb("[{}]"), "more than 100000 values"),
+        (bomb("{{<<: [{}]}}"), "more than 100000 values"),
+        ("&a {<<: *a}", "more than 100000 values"),
+        ("? &a [1, 1]\n: 1\n? [*a, *a]\n: 2", "column 3: a name must be one word or number"),
+        ("a: " + "9" * 5000, "a number of 5000 characters, 999"),
+        ("a: 0x" + "f" * 5000, "a number of 5002 characters, 0xfff"),
+        ("a: 2020-01-01", "line 1, column 4: 2020-01-01 is a date to YAML; put it in quotes"),
+        ("a: !!set {b, c}", "could not determine a constructor for the tag '!!set'"),
+        ("a: !!binary aGk=", "could not determine a constructor for the tag '!!binary'"),
+        ("a: !!bool maybe", "maybe"),
+        ("a: " + "{b: " * 60 + "1" + "}" * 60, "groups may be 50 deep"),
+        ("a: '" + "x" * 600_000 + "'", "more than 500000 characters"),
+        ("a: \udcff", "unacceptable character #xdcff"),
+    ],
+)
+def test_what_would_take_for_ever_or_is_no_plain_data_is_refused(text, reason):
+    message = refusal(text)
+    assert reason in message
+    assert len(message.splitlines()) == 1
+    assert len(message) < 300
+
+
+def test_directives_anchors_and_a_byte_order_mark_are_read(tmp_path):
+    assert parse_yaml("%YAML 1.2\n---\na: 1\n", "it", ConfigError) == {"a": 1}
+    assert parse_yaml("[&a 1, &a 2, *a]", "it", ConfigError) == [1, 2, 2]
+    marked = tmp_path / "marked.yaml"
+    marked.write_bytes(b"\xef\xbb\xbfa: 1\n")
+    assert read_yaml(marked, "it", ConfigError) == {"a": 1}
+
+
+def test_no_more_of_an_endless_file_is_read_than_its_bound():
+    with pytest.raises(ConfigError, match="more than 500000 characters"):
+        read_yaml(Path("/dev/zero"), "it", ConfigError)

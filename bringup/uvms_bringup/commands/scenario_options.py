@@ -70,6 +70,7 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
     from uvms_bringup.cast import Cast
     from uvms_bringup.scenario import load_scenario
     from uvms_bringup.session import prepare
+    from uvms_core.vehicle import vehicle_warnings
 
     scenario = load_scenario(
         options.scenario,
@@ -80,6 +81,8 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
     )
     cast = Cast.parse(options.node, options.without, options.namespace)
     session = prepare(scenario, options.output, str(pace), options.command_line, cast)
+    for line in vehicle_warnings(session.vehicle):
+        print(f"warning: vehicle: {line}", file=sys.stderr)
     print(f"{scenario.scenario}: {scenario.description}\nto {session.folder}", flush=True)
     return session
 

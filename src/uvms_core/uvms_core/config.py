@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError
 from uvms_core.errors import ConfigError, UvmsError
 
 _LONGEST_ECHO = 120  # characters of a wrong value that an error repeats
+_MOST_FAULTS = 50  # lines of an error; a table in the wrong place has thousands
 
 
 class Config(BaseModel):
@@ -28,17 +29,21 @@ class Config(BaseModel):
 
 def explain(error: ValidationError, what: str, model: type[BaseModel]) -> str:
     """One line per fault: the field, the value, and what is allowed."""
-    items = error.errors()
-    places = [item["loc"] for item in items]
+    items = error.errors(include_url=False, include_context=False)
+    places = {item["loc"][:k] for item in items for k in range(len(item["loc"]))}
     shown = [item for item in items if not _follows_from_others(item, places)]
-    return "\n".join(_explain_one(item, what, model) for item in shown)
+    lines = [_explain_one(item, what, model) for item in shown[:_MOST_FAULTS]]
+    if more := len(shown) - len(lines):
+        lines.append(f"{what}: and {more} more faults")
+    return "\n".join(lines)
 
 
-def _follows_from_others(item, places: list[tuple]) -> bool:
-    """Whether a list is only called too short because of faults of its own values."""
-    place = item["loc"]
-    inside = (other[: len(place)] == place and len(other) > len(place) for other in places)
-    return item["type"] == "too_short" and any(inside)
+def _follows_from_others(item, groups: set[tuple]) -> bool:
+    """Whether a list is only called too short because of faults of its own values.
+
+    groups: places that have a fault inside.
+    """
+    return item["type"] == "too_short" and item["loc"] in groups
 
 
 def _explain_one(item, what: str, model: type[BaseModel]) -> str:
@@ -48,9 +53,19 @@ def _explain_one(item, what: str, model: type[BaseModel]) -> str:
         return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
     if item["type"] == "missing":
         return line
-    got = repr(item["input"])
-    is_section = isinstance(item["input"], dict | BaseModel)
-    return line if is_section or len(got) > _LONGEST_ECHO else f"{line} (got {got})"
+    got = _echo(item["input"])
+    return line if got is None else f"{line} (got {got})"
+
+
+def _echo(value) -> str | None:
+    """The value as a message repeats it; None for a section, and for one that is too long."""
+    if isinstance(value, dict | BaseModel):
+        return None
+    try:
+        text = repr(value)
+    except ValueError:  # an integer of more digits than Python writes
+        return None
+    return text if len(text) <= _LONGEST_ECHO else None
 
 
 def _names_at(model: type[BaseModel], path: tuple) -> list[str]:

@@ -14,9 +14,16 @@ from typing import Any
 import yaml
 
 from uvms_core.errors import UvmsError
+from uvms_core.yaml_nodes import MAX_VALUES, NodeError, check_nodes
 
-MAX_VALUES = 100_000
-"""Values in a file at most, each alias counted with all that it stands for."""
+__all__ = ["MAX_VALUES", "dump_yaml", "parse_yaml", "read_yaml"]
+
+MAX_CHARACTERS = 500_000
+"""Longest text that is read: the reader takes 6 us a character, so it is done in three seconds. The
+longest vehicle file of the project has 12,000."""
+
+MAX_DEPTH = 50
+"""Most groups within one another; a vehicle file has eight."""
 
 _DUPLICATE = re.compile(r'found duplicate key "(.*?)" with value', re.DOTALL)
 
@@ -27,27 +34,31 @@ def parse_yaml(text: str, what: str, error: type[UvmsError]) -> Any:
     Raises:
         UvmsError: of the type `error`: the text is not valid YAML; the message says where and why.
     """
-    from ruamel.yaml import YAML  # not needed to import the package
-    from ruamel.yaml.error import YAMLError
+    from ruamel.yaml.error import YAMLError  # not needed to import the package
 
     try:
-        data = YAML(typ="safe", pure=True).load(text)
-        _check_size(data)
-    except (YAMLError, ValueError, RecursionError) as fault:  # ValueError: the date 2020-99-99
+        return _load(text)
+    except (YAMLError, ValueError, KeyError, RecursionError) as fault:
+        # ValueError: of the date 2020-99-99; KeyError: of `!!bool maybe`
         raise error(f"{what}: is not valid YAML: {_reason(fault)}") from fault
-    return data
 
 
 def read_yaml(path: Path, what: str, error: type[UvmsError]) -> Any:
     """The data of a YAML file in UTF-8; raises as `parse_yaml`, or that it cannot be read."""
     try:
-        text = path.read_text(encoding="utf-8")
-    except OSError as fault:
-        raise error(f"{what}: cannot be read: {fault.strerror}") from fault
-    except UnicodeDecodeError as fault:
-        reason = f"byte {fault.start} is not UTF-8"
-        raise error(f"{what}: cannot be read: {reason}; save the file as UTF-8") from fault
+        with path.open("rb") as file:  # no more of it than is needed to see that it is too long
+            text = file.read(4 * MAX_CHARACTERS + 1).decode("utf-8-sig")
+    except (OSError, ValueError) as fault:
+        raise error(f"{what}: cannot be read: {_unreadable(fault)}") from fault
     return parse_yaml(text, what, error)
+
+
+def _unreadable(fault: OSError | ValueError) -> str:
+    if isinstance(fault, OSError):
+        return str(fault.strerror)
+    if isinstance(fault, UnicodeDecodeError):
+        return f"byte {fault.start} is not UTF-8; save the file as UTF-8"
+    return str(fault)  # a NUL in the path
 
 
 def dump_yaml(data: Any, **options: Any) -> str:
@@ -70,25 +81,39 @@ _Dumper.add_implicit_resolver(
 )
 
 
-def _check_size(data: Any) -> None:
-    """ValueError for more than MAX_VALUES values, which a few nested aliases can stand for."""
-    sizes: dict[int, int] = {}
+def _load(text: str) -> Any:
+    """The data, once the nodes that they are made of have been checked."""
+    from ruamel.yaml import YAML
+    from ruamel.yaml.composer import Composer
 
-    def size(value: Any) -> int:
-        if not isinstance(value, (dict, list)):
-            return 1
-        if id(value) not in sizes:
-            sizes[id(value)] = MAX_VALUES  # of a value that contains itself
-            items = value.values() if isinstance(value, dict) else value
-            sizes[id(value)] = 1 + sum(map(size, items))
-        return sizes[id(value)]
+    dates: list[Any] = []
 
-    if size(data) > MAX_VALUES:
-        raise ValueError(f"it has more than {MAX_VALUES} values, counting what aliases repeat")
+    class CheckedComposer(Composer):
+        def __init__(self, loader: Any = None) -> None:
+            super().__init__(loader)
+            self.warn_double_anchors = False  # YAML lets an anchor be given anew
+
+        def compose_document(self) -> Any:
+            root = super().compose_document()
+            dates.extend(check_nodes(root))
+            return root
+
+    if len(text) > MAX_CHARACTERS:
+        raise ValueError(f"it has more than {MAX_CHARACTERS} characters")
+    reader = YAML(typ="safe", pure=True)
+    reader.Composer, reader.max_depth = CheckedComposer, MAX_DEPTH
+    data = reader.load(text)
+    if dates:
+        raise NodeError(f"{dates[0].value} is a date to YAML; put it in quotes", dates[0])
+    return data
 
 
 def _reason(fault: Exception) -> str:
     """One line: where, and what is wrong there."""
+    from ruamel.yaml.composer import MaxDepthExceededError
+
+    if isinstance(fault, MaxDepthExceededError):
+        return f"maximum recursion depth exceeded: groups may be {MAX_DEPTH} deep in one another"
     mark = getattr(fault, "problem_mark", None)
     if mark is None:
         text = str(fault).replace('in "<unicode string>", position', "at character")

@@ -5,11 +5,14 @@ from uvms_core.vehicle.environment import Environment
 from uvms_core.vehicle.hull import Attachment, Hull
 from uvms_core.vehicle.limits import joint_limits
 from uvms_core.vehicle.loader import (
+    Examination,
     dump_vehicle,
+    examine_vehicle,
     load_vehicle,
     vehicle_from_data,
     vehicle_from_yaml,
 )
+from uvms_core.vehicle.plausible import Finding, vehicle_findings, vehicle_warnings
 from uvms_core.vehicle.sensors import Sensors
 from uvms_core.vehicle.tether import Tether
 from uvms_core.vehicle.thrusters import Thruster
@@ -20,6 +23,8 @@ __all__ = [
     "Attachment",
     "DragCylinder",
     "Environment",
+    "Examination",
+    "Finding",
     "Hull",
     "Joint",
     "Link",
@@ -28,8 +33,11 @@ __all__ = [
     "Thruster",
     "Vehicle",
     "dump_vehicle",
+    "examine_vehicle",
     "joint_limits",
     "load_vehicle",
+    "vehicle_findings",
     "vehicle_from_data",
     "vehicle_from_yaml",
+    "vehicle_warnings",
 ]

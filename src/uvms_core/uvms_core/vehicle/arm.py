@@ -60,6 +60,12 @@ class Joint(Part):
     coulomb_width_deg_s: float = Field(
         gt=0.0, description="rate w of the smooth sliding friction tanh(rate / w), degrees/s"
     )
+    brake_nm: float = Field(
+        default=0.0,
+        ge=0.0,
+        description="holding torque of the brake, N m, which engages where the joint has no command"
+        " and is released by one; 0: there is none, and the joint swings freely",
+    )
     stop_stiffness_nm_rad: float = Field(
         ge=0.0, description="stiffness of the end stops, N m per rad"
     )

@@ -1,5 +1,6 @@
 """Base class and vector types of the vehicle file, with their physical checks."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Annotated, Any
 
@@ -13,6 +14,12 @@ Vector6 = tuple[float, float, float, float, float, float]
 Rows = tuple[tuple[float, ...], ...]
 
 _TOLERANCE = 1e-9  # relative; values in files are rounded decimals or full doubles
+
+PRINTED = 1e-3
+"""Relative difference that is taken for rounding in a printed table, which has three digits or
+more, such as 0.707 for a half right angle, or 10.774 opposite 10.775. It is evened out."""
+
+_EXACT_UNIT = 1e-6  # a length as near to one as this is left as it is
 
 
 class Part(Config):
@@ -49,17 +56,28 @@ def _square(size: int) -> BeforeValidator:
 
 
 def _symmetric(rows: Rows) -> np.ndarray:
+    """The matrix, with entries that differ by the rounding of print replaced by their mean."""
     lengths = {len(row) for row in rows}
     if lengths != {len(rows)}:
         raise ValueError(f"needs {len(rows)} values in each row, has rows of {sorted(lengths)}")
     matrix = np.array(rows)
-    if np.abs(matrix - matrix.T).max() > _TOLERANCE * max(np.abs(matrix).max(), 1.0):
-        raise ValueError("must be symmetric")
-    return matrix
+    apart = np.abs(matrix - matrix.T)
+    rounding = _TOLERANCE * max(np.abs(matrix).max(), 1.0)
+    allowed = np.maximum(PRINTED * np.maximum(np.abs(matrix), np.abs(matrix.T)), rounding)
+    if (apart > allowed).any():
+        i, j = np.unravel_index(int(np.argmax(apart / allowed)), apart.shape)
+        share = apart[i, j] / max(abs(matrix[i, j]), abs(matrix[j, i]))
+        raise ValueError(
+            f"must be symmetric: row {i + 1}, column {j + 1} is {matrix[i, j]:g} and row {j + 1},"
+            f" column {i + 1} is {matrix[j, i]:g}; they differ by {apart[i, j]:.4g}, which is"
+            f" {share:.2%}; up to {PRINTED:.1%} is taken for rounding"
+        )
+    return matrix if apart.max() <= rounding else 0.5 * (matrix + matrix.T)
 
 
 def _is_inertia(rows: Rows) -> Rows:
-    moments = np.linalg.eigvalsh(_symmetric(rows))
+    matrix = _symmetric(rows)
+    moments = np.linalg.eigvalsh(matrix)
     if moments[0] <= 0.0:
         raise ValueError(f"must be positive definite; its least principal moment is {moments[0]:g}")
     if moments[2] > (moments[0] + moments[1]) * (1.0 + _TOLERANCE):
@@ -67,30 +85,43 @@ def _is_inertia(rows: Rows) -> Rows:
         raise ValueError(
             f"no body has principal moments {text}: the largest exceeds the others' sum"
         )
-    return rows
+    return _rows(matrix)
 
 
 def _is_added_mass(rows: Rows) -> Rows:
-    values = np.linalg.eigvalsh(_symmetric(rows))
+    matrix = _symmetric(rows)
+    values = np.linalg.eigvalsh(matrix)
     if values[0] < -_TOLERANCE * max(values[-1], 1.0):
         raise ValueError(f"must be positive semidefinite; its least eigenvalue is {values[0]:g}")
-    return rows
+    return _rows(matrix)
+
+
+def _rows(matrix: np.ndarray) -> Rows:
+    return tuple(tuple(row) for row in matrix.tolist())
 
 
 def _is_unit(vector: Vector3) -> Vector3:
-    length = float(np.linalg.norm(vector))
-    if abs(length - 1.0) > 1e-6:
-        raise ValueError(f"must be a unit vector; its length is {length:g}")
-    return vector
+    length = math.hypot(*vector)
+    if abs(length - 1.0) > PRINTED:
+        raise ValueError(
+            f"must be a unit vector; its length is {length:g}, and up to {PRINTED:g} off is taken"
+            " for rounding"
+        )
+    if abs(length - 1.0) <= _EXACT_UNIT:
+        return vector
+    x, y, z = vector
+    return x / length, y / length, z / length
 
 
 Inertia = Annotated[Rows, _square(3), AfterValidator(_is_inertia)]
-"""(3, 3) kg m^2, positive definite, principal moments within the triangle inequality."""
+"""(3, 3) kg m^2, positive definite, principal moments within the triangle inequality; symmetric up
+to the rounding of print."""
 
 AddedMass = Annotated[Rows, _square(6), AfterValidator(_is_added_mass)]
 """(6, 6) symmetric positive semidefinite, order (X Y Z K M N), kg, kg m and kg m^2."""
 
 UnitVector = Annotated[Vector3, AfterValidator(_is_unit)]
+"""(3,) of length one; up to the rounding of print, which is evened out."""
 
 
 def unique_names(parts: Sequence[Any], what: str) -> None:

@@ -1,5 +1,7 @@
 """What a run of the plant starts from and how it is integrated."""
 
+from typing import Annotated
+
 import numpy as np
 from pydantic import Field
 
@@ -18,13 +20,16 @@ from uvms_core.vehicle.postures import (
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 
+Turns = Annotated[float, Field(ge=-720.0, le=720.0)]
+"""An attitude in degrees: more than two turns is a mistake."""
+
 
 class PlantConfig(StartConfig):
     """Integration step, control period, start and current."""
 
     step_s: float = Field(0.005, gt=0.0, le=0.05, description="Runge-Kutta step, s")
     control_period_s: ControlPeriod = CONTROL_PERIOD_S
-    initial_rpy_deg: tuple[float, float, float] = Field(
+    initial_rpy_deg: tuple[Turns, Turns, Turns] = Field(
         (0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX) at the start, degrees"
     )
     initial_velocity: tuple[float, float, float, float, float, float] = Field(

@@ -20,6 +20,7 @@ from uvms_dynamics.simulation.integrator import (
     advance,
     make_scratch,
 )
+from uvms_dynamics.simulation.plant.brakes import Brakes
 from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state, steps_in
 from uvms_dynamics.simulation.plant.divergence import check_finite
 from uvms_dynamics.simulation.plant.stability import check_step
@@ -52,6 +53,7 @@ class Plant:
         current = np.array(config.current_ned_m_s, dtype=float)
         self._system = System(build_model(vehicle), build_thrusters(vehicle), current)
         self._scratch = make_scratch(self._system)
+        self._brakes = Brakes(vehicle, self._system, self._scratch)
         self._state = initial_state(vehicle, config)
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)
@@ -86,7 +88,8 @@ class Plant:
     def step(self, thruster: ThrusterCommand | None, joints: JointCommand | None) -> None:
         """Advance by one control period under constant commands, cut at the drives' limits.
 
-        None is the safe state, where there is no command to use: no thrust, no torque.
+        None is the safe state, where there is no command to use: no thrust; no torque of the
+        drives, and those joints braked that have a brake.
 
         Raises SignalError for a command of wrong size or that is not finite (the plant then does
         not move), PlantDiverged where the state is no longer finite.
@@ -116,7 +119,10 @@ class Plant:
         )
 
     def _start(self) -> None:
-        """Derivative and sensor readings of t = 0, without commands."""
+        """Derivative and sensor readings of t = 0, without commands.
+
+        Brakes are released: the drives have taken over before a run begins.
+        """
         idle = np.zeros(self._vehicle.n_thrusters)
         self._commands = ThrusterCommand(0, idle), JointCommand(0, self._effort)
         self._safe = True, True
@@ -126,7 +132,11 @@ class Plant:
     def _integrate(self, thrust: Array, states: Array, rates: Array) -> None:
         """As many steps as the tables have rows after the first; the last is at the stamp."""
         step = to_seconds(self._step)
-        advance(self._system, self._state, thrust, self._effort, step, self._scratch, states, rates)
+        if self._safe[1] and self._brakes.exist and len(states) > 1:
+            self._brakes.advance(self._state, thrust, step, states, rates)
+        else:
+            scratch = self._scratch
+            advance(self._system, self._state, thrust, self._effort, step, scratch, states, rates)
         self._rate = rates[-1].copy()
         check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)
 

@@ -59,7 +59,14 @@ class Bound(NamedTuple):
 
 def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
     """Raise ConfigError where the step is unstable; names step, mode, and the greatest step."""
-    bound = greatest_step(vehicle, config)
+    try:
+        bound = greatest_step(vehicle, config)
+    except np.linalg.LinAlgError as fault:  # masses, lengths or frictions of 1e100 and more
+        raise ConfigError(
+            f"step_s: no step can be found for vehicle {vehicle.name}: its equations have no"
+            f" solution in 64-bit numbers ({fault}); a mass, length, friction or stop is too great"
+            " or too small against the others"
+        ) from fault
     if config.step_s > bound.step_s:
         raise ConfigError(
             f"step_s: {config.step_s:g} s is unstable with the {cause_of(vehicle, bound)}: a mode"
