@@ -37,6 +37,8 @@ __all__ = [
     "NAVIGATION",
     "NODES",
     "PLANT",
+    "RECORDED",
+    "ROSOUT",
     "THRUST_ALLOCATOR",
     "WORLD_FRAME",
     "Action",
@@ -112,6 +114,9 @@ TF = Topic(
 TF_STATIC = Topic("/tf_static", "tf2_msgs/msg/TFMessage", qos=LATCHED)
 ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String", qos=LATCHED)
 DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", diagnostics.Status)
+ROSOUT = Topic("/rosout", "rcl_interfaces/msg/Log", qos=Qos(transient_local=True))
+RECORDED = Topic("recorded", "rosgraph_msgs/msg/Clock", int)
+"""Of the run, not of the loop: up to here everything is in the log. The plant waits for it."""
 
 
 def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:
@@ -136,6 +141,7 @@ def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:
         TF_STATIC,
         ROBOT_DESCRIPTION,
         DIAGNOSTICS,
+        ROSOUT,
     )
 
 
