@@ -4,6 +4,7 @@ A recorder that lags behind by more than the history of a topic loses messages f
 not. The plant therefore stays within a window of what has been acknowledged.
 """
 
+import time
 from collections.abc import Collection, Mapping
 
 from rclpy.node import Node
@@ -25,6 +26,10 @@ recorder holds back until its next acknowledgement, stay well within it."""
 MOST_PERIODS = 40
 """Largest window: more gains no speed."""
 ACKNOWLEDGEMENTS_A_WINDOW = 4
+LOOK_S = 0.5
+"""Wall time between two looks at a plant that does not go on."""
+QUIET_LOOKS = 20
+"""Looks in a row without any message after which what is missing will not come any more."""
 TRUTH = (
     topics.APPLIED_THRUST,
     topics.TRUE_ODOMETRY,
@@ -69,7 +74,8 @@ class Acknowledgement:
         period: int,
         window: int,
     ) -> None:
-        self._newest = recorder.newest
+        self._recorder, self._newest = recorder, recorder.newest
+        self.given_up: list[str] = []  # what was waited for in vain, in words
         self._plants = [topic.name for topic in EACH_TICK if _counts(topic, graph, foreign)]
         answers = [
             topic
@@ -83,6 +89,8 @@ class Acknowledgement:
         self._step = period * max(window // ACKNOWLEDGEMENTS_A_WINDOW, 1)
         self._pending: int | None = None
         self._answered = False
+        self._acknowledged = 0
+        self._due, self._quiet, self._heard = 0.0, 0, 0
         self._wire, self._applied = codec(topics.RECORDED.type), codec(topics.APPLIED_THRUST.type)
         self._publisher = node.create_publisher(
             message_class(topics.RECORDED), topics.RECORDED.name, qos_profile(topics.RECORDED.qos)
@@ -102,6 +110,34 @@ class Acknowledgement:
         if stamp is None or not self._complete(stamp):
             return
         self._pending = None
+        self._acknowledge(stamp)
+
+    def look_after(self) -> None:
+        """Called often: if all is quiet, say it again, and at last give up what is missing.
+
+        An acknowledgement, and any message, is lost for good where this process was halted for
+        longer than the middleware remembers it. The plant must not wait for ever; the counts at the
+        end of the run tell what is missing.
+        """
+        now, heard = time.monotonic(), self._recorder.received.total()
+        if now < self._due:
+            return
+        self._due = now + LOOK_S
+        self._quiet = self._quiet + 1 if heard == self._heard else 0
+        self._heard = heard
+        if self._quiet and self._quiet % QUIET_LOOKS == 0 and self._pending is not None:
+            self._give_up(self._pending)
+        elif self._quiet:
+            self._acknowledge(self._acknowledged)
+
+    def _give_up(self, stamp: int) -> None:
+        lacking = sorted(self._lacking(stamp))
+        self.given_up.append(f"t = {to_seconds(stamp):.2f} s: never came: {', '.join(lacking)}")
+        self._pending = None
+        self._acknowledge(max(stamp, self._newest[topics.CLOCK.name]))
+
+    def _acknowledge(self, stamp: int) -> None:
+        self._acknowledged = stamp
         message = to_message(topics.RECORDED, stamp, ())
         self._publisher.publish(self._wire.encode(message))
 
@@ -110,6 +146,14 @@ class Acknowledgement:
         return all(newest.get(name, -1) >= stamp for name in self._plants) and (
             not self._answered or all(newest.get(name, -1) >= before for name in self._answers)
         )
+
+    def _lacking(self, stamp: int) -> set[str]:
+        newest = self._newest
+        lacking = {name for name in self._plants if newest.get(name, -1) < stamp}
+        if self._answered:
+            before = stamp - self._period
+            lacking |= {name for name in self._answers if newest.get(name, -1) < before}
+        return lacking
 
 
 def _counts(topic: Topic, graph: Mapping[str, NodeTopics], foreign: Collection[str]) -> bool:

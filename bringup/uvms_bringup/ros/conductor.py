@@ -101,6 +101,7 @@ class Conductor(Node):
             qos_profile(topics.DIAGNOSTICS.qos),
         )
         self._roll_call = RollCall(self, graph, foreign, graph=graph)
+        self.acknowledgement: Acknowledgement | None = None
         self.losses = Losses(self, self.recorder, set(graph) - set(foreign))
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
@@ -114,7 +115,7 @@ class Conductor(Node):
     def acknowledge(self, period: int, window: int) -> None:
         """From now on tell the plant what is recorded, as `Acknowledgement` says."""
         further = [topic for topic in self._end if topic is topics.TF]
-        self._acknowledgement = Acknowledgement(
+        self.acknowledgement = Acknowledgement(
             self, self.recorder, self._graph, self._foreign, further, period, window
         )
 

@@ -162,6 +162,8 @@ class GraphRun:
             conductor.census.forgive(role)
             when = to_seconds(conductor.stamp)
             self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
+        if conductor.acknowledgement is not None:
+            conductor.acknowledgement.look_after()
         if conductor.recorder.set_back is not None:
             before, after = map(to_seconds, conductor.recorder.set_back)
             text = f"somebody set /clock back from {before:.2f} s to {after:.2f} s"
@@ -183,6 +185,8 @@ class GraphRun:
         self.ending.incidents += [
             f"{role} did not say at the end how many messages it had sent" for role in silent
         ]
+        if conductor.acknowledgement is not None:
+            self.ending.incidents += conductor.acknowledgement.given_up
         self.ending.sent, self.ending.lost = conductor.losses.sent(), conductor.losses.lost()
 
 
