@@ -134,5 +134,3 @@ def one_domain() -> dict[str, str]:
 def no_domain() -> dict[str, str]:
     """None given: every run finds one by itself."""
     return {"ROS_DOMAIN_ID": ""}
-
-

@@ -41,11 +41,12 @@ def percentiles(values: Array) -> Metrics:
     return {"p50": float(np.percentile(values, 50)), "p99": float(np.percentile(values, 99))}
 
 
-def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
+def summarise(log: str | Path | RunLog, *, completed: bool, wall_s: float) -> dict[str, Any]:
     """The summary of a run; metrics that the log does not determine are None.
 
     Args:
         log: a log or its file.
+        completed: whether the run reached its end.
         wall_s: wall time that it took, s.
 
     Raises:
@@ -58,7 +59,7 @@ def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
     summary = {
         "scenario": log.run.get("scenario", ""),
         "seed": int(log.run.get("seed", 0)),
-        **_outcome(log),
+        "completed": completed,
         "sim_duration_s": duration,
         "wall_s": wall_s,
         "real_time_factor": duration / wall_s if wall_s > 0.0 else None,
@@ -120,17 +121,3 @@ def _or(otherwise: Any, work: Callable[[], Any]) -> Any:
 
 def _or_none(work: Callable[[], Any]) -> Any:
     return _or(None, work)
-
-
-def _outcome(log: RunLog) -> dict[str, Any]:
-    from uvms_analysis.log import run_end
-
-    end = run_end.RunEnd.from_metadata(log.metadata[run_end.NAME])
-    word, reasons = "completed", []
-    if end.goal == "aborted":
-        word, reasons = "given up", ["goal aborted"]
-    if end.stopped_by:
-        word, reasons = "aborted", [f"stopped by {end.stopped_by}"]
-    if end.foreign or end.lost:
-        word, reasons = "invalid", [*end.foreign, *map(str, end.lost.items())]
-    return {"outcome": word, "reasons": reasons, "completed": word == "completed"}
