@@ -92,6 +92,7 @@ class Session:
             succeeded = simulate(self.scenario, self.vehicle, self.goal, writer, progress)
             if began:
                 ending.goal = "succeeded" if succeeded else "aborted"
+            ending.sent = log.counts  # what is computed here is written here
 
         return self._record(run)
 

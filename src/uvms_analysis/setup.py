@@ -29,7 +29,9 @@ setup(
     zip_safe=False,
     entry_points={
         "uvms.commands": [
+            "check = uvms_analysis.commands.check:COMMAND",
             "identify = uvms_analysis.commands.identify:COMMAND",
+            "recover = uvms_analysis.commands.recover:COMMAND",
             "report = uvms_analysis.commands.report:COMMAND",
             "validate = uvms_analysis.commands.validate:COMMAND",
         ],

@@ -18,6 +18,7 @@ from uvms_core.diagnostics import Status
 from uvms_core.end_effector_path import EndEffectorPath
 from uvms_core.signals import (
     Allocation,
+    AppliedThrust,
     DisturbanceBudget,
     JointCommand,
     JointStates,
@@ -149,6 +150,9 @@ class Synthetic:
         log.write(
             topics.ALLOCATION, Allocation(stamp, thrust, wrench.wrench, 0 * restoring, saturated)
         )
+        before = max(stamp - to_nanoseconds(PERIOD), 0)
+        applied = AppliedThrust(stamp, thrust, thrust, before, before, number == 0, number == 0)
+        log.write(topics.APPLIED_THRUST, applied)
         if number % 10 == 0:
             self.plan(log, number, stamp, time)
 

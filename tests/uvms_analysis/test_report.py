@@ -7,6 +7,7 @@ import re
 
 import pytest
 from matplotlib.image import imread
+from rewrite import rewrite
 from synthetic import Known, write_log
 
 from uvms_analysis.analysis import Analysis
@@ -62,7 +63,7 @@ def test_figures_that_cannot_be_drawn_say_why(tmp_path):
     LogWriter(tmp_path / "run.mcap").close()
     page = report(tmp_path / "run.mcap").read_text(encoding="utf-8")
     assert page.count("No figure: ") == len(FIGURES)
-    assert "not completed" not in page
+    assert "Outcome: invalid" in page
     assert not list(tmp_path.glob("*.png"))
 
 
@@ -96,20 +97,25 @@ def test_a_damaged_attachment_costs_only_what_needs_it(tmp_path, folder):
 
 
 @pytest.mark.parametrize(
-    ("whole", "damaged", "reason"),
+    ("name", "whole", "other", "reason"),
     [
-        (b"environment:", b"environmxxt:", "its attachment 'vehicle.yaml': environment: Field"),
-        (b"environment:", b"environment[", "its attachment 'vehicle.yaml': is not valid YAML"),
-        (b"\nseed: 7\n", b"\nseed: [\n", "its attachment 'config.yaml': is not valid YAML"),
-        (
-            b"scenario: synthetic\nseed: 7\n",
-            b"- - - - - synthetic\n-  - 7\n\n",
-            "its attachment 'config.yaml' is not a mapping",
-        ),
+        ("vehicle.yaml", "environment:", "environmxxt:", "environment: Field"),
+        ("vehicle.yaml", "environment:", "environment[", "is not valid YAML"),
+        ("config.yaml", "seed: 7", "seed: [", "is not valid YAML"),
+        ("config.yaml", "scenario: synthetic\nseed: 7", "- 7", "is not a mapping"),
     ],
 )
-def test_an_attachment_that_says_something_else_is_named(tmp_path, folder, whole, damaged, reason):
-    log = RunLog.open(damaged_log(folder, tmp_path, whole, damaged))
-    read = log.configuration if "config" in reason else lambda: Analysis(log).vehicle
-    with pytest.raises(LogError, match=re.escape(reason)):
+def test_an_attachment_that_says_something_else_is_named(
+    tmp_path, folder, name, whole, other, reason
+):
+    def change(attachments):
+        text = attachments[name].decode()
+        assert whole in text
+        return attachments | {name: text.replace(whole, other, 1).encode()}
+
+    log = RunLog.open(rewrite(folder / "run.mcap", tmp_path / "run.mcap", attachments=change))
+    assert log.fault == ""
+    read = log.configuration if "config" in name else lambda: Analysis(log).vehicle
+    with pytest.raises(LogError, match=re.escape(f"its attachment {name!r}")) as fault:
         read()
+    assert reason in str(fault.value)

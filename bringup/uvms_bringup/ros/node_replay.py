@@ -177,7 +177,7 @@ def replay_into(run: RunLog, node: str, rate: float, folder: Path) -> int:
         RunError: the node died, did not come up or does not answer.
         LogError: the log lacks the node's inputs or outputs, or the folder cannot be written.
     """
-    with LogWriter(folder / "replay.mcap") as log:
+    with LogWriter(folder / "replay.mcap", overwrite=True) as log:
         for name, data in run.attachments.items():
             log.attach(name, data)
         log.metadata(RUN, dict(run.run) | {"replay_of": run.path.name, "replay_into": node})

@@ -10,7 +10,7 @@ from uvms_analysis.log import goal_file
 from uvms_analysis.log.read import RunLog, Series
 from uvms_core import topics
 from uvms_core.end_effector_path import EndEffectorPath
-from uvms_core.errors import VehicleFileError
+from uvms_core.errors import UvmsError, VehicleFileError
 from uvms_core.signals import Array, PathGoal, Reference, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.loader import vehicle_from_yaml
@@ -56,7 +56,10 @@ class Analysis:
 
     @cached_property
     def _model(self) -> Model:
-        return build_model(self.vehicle)
+        try:
+            return build_model(self.vehicle)
+        except UvmsError as fault:
+            raise LogError(f"log {self.log.path}: its vehicle: {fault}") from fault
 
     @cached_property
     def _true(self) -> tuple[Series, Series]:
@@ -110,6 +113,11 @@ class Analysis:
         return Series(odometry.stamps, {"position": self._tool(odometry, joints)})
 
     def _tool(self, odometry: Series, joints: Series) -> Array:
+        if joints.position.shape[1:] != (self.vehicle.n_joints,):
+            raise LogError(
+                f"log {self.log.path}: its messages have {joints.position.shape[1]} joints, its"
+                f" vehicle {self.vehicle.n_joints}"
+            )
         rows = zip(odometry.position, odometry.quaternion, joints.position, strict=True)
         return np.array([end_effector(self._model, *row)[0] for row in rows])
 
@@ -137,7 +145,12 @@ class Analysis:
         """The path of the run's goal, None without one."""
         if goal_file.NAME not in self.log.attachments:
             return None
-        return goal_file.path_from_json(self.log.text(goal_file.NAME))
+        goal = goal_file.path_from_json(self.log.text(goal_file.NAME))
+        try:
+            EndEffectorPath(goal)
+        except (UvmsError, ValueError, IndexError) as fault:
+            raise LogError(f"log {self.log.path}: {goal_file.NAME}: {fault}") from fault
+        return goal
 
     @cached_property
     def path_start_s(self) -> float:
@@ -221,5 +234,7 @@ class Analysis:
     @cached_property
     def lockstep_timeouts(self) -> int:
         """Number of times the plant continued without a command."""
+        if topics.DIAGNOSTICS.name in self.log.unusable:
+            return 0
         values = [status.number("lockstep_timeouts") for status in self.log.statuses(topics.PLANT)]
         return int(max((value for value in values if np.isfinite(value)), default=0))

@@ -7,12 +7,17 @@ from typing import Any
 import numpy as np
 
 from uvms_analysis.analysis import Analysis
+from uvms_analysis.check import check_log
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
+from uvms_analysis.outcome import judge
 from uvms_core import topics
 from uvms_core.signals import Array
 
 Metrics = dict[str, float | None]
+
+NOT_THESE = (ValueError, IndexError, KeyError, TypeError, ArithmeticError)
+"""Raised by the mathematics on the values of a foreign log; LogError where the log is damaged."""
 
 LOADED = (
     topics.TRUE_ODOMETRY,
@@ -41,61 +46,107 @@ def percentiles(values: Array) -> Metrics:
     return {"p50": float(np.percentile(values, 50)), "p99": float(np.percentile(values, 99))}
 
 
-def summarise(log: str | Path | RunLog, *, completed: bool, wall_s: float) -> dict[str, Any]:
+def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
     """The summary of a run; metrics that the log does not determine are None.
+
+    `missing` says why they are; the figures of an invalid run stay, and `outcome` says what they
+    are worth.
 
     Args:
         log: a log or its file.
-        completed: whether the run reached its end.
-        wall_s: wall time that it took, s.
+        wall_s: wall time that the run took, s.
 
     Raises:
         LogError: the file cannot be read.
     """
     log = log if isinstance(log, RunLog) else RunLog.open(log)
     log.load([topic for topic in LOADED if log.has(topic)])
-    run = Analysis(log)
-    duration = _or_none(lambda: float(run.truth.time[-1] - run.truth.time[0])) or 0.0
+    check = check_log(log)
+    outcome = judge(log, check)
+    run, figures = Analysis(log), Figures()
+    duration = figures.of("sim_duration_s", lambda: _span(run)) or 0.0
+    seed, end = figures.of("seed", lambda: _seed(log)), figures.of("goal", lambda: log.end)
     summary = {
         "scenario": log.run.get("scenario", ""),
-        "seed": int(log.run.get("seed", 0)),
-        "completed": completed,
+        "seed": seed,
+        "outcome": outcome.word,
+        "reasons": list(outcome.reasons),
+        "completed": outcome.completed,
+        "goal": None if end is None else end.goal,
         "sim_duration_s": duration,
         "wall_s": wall_s,
         "real_time_factor": duration / wall_s if wall_s > 0.0 else None,
         "lockstep_timeouts": run.lockstep_timeouts,
     }
-    summary |= _precision(run) | _effort(run)
+    summary |= _precision(run, figures) | _effort(run, figures)
     summary["log_fault"] = log.fault or None
     summary["rejected_messages"] = {name: len(items) for name, items in log.rejected.items()}
+    summary["check"] = check.summary()
+    summary["missing"] = figures.missing
     return summary
 
 
-def _precision(run: Analysis) -> dict[str, Any]:
-    nothing = {"rms": None, "max": None}
-    roll_pitch = _or_none(lambda: run.rpy_deg)
+class Figures:
+    """Works figures out one by one; where the log does not determine one, it keeps the reason."""
+
+    def __init__(self) -> None:
+        self.missing: dict[str, str] = {}
+
+    def of(self, name: str, work: Callable[[], Any], otherwise: Any = None) -> Any:
+        """What `work` gives, or `otherwise`."""
+        try:
+            return work()
+        except LogError as fault:
+            self.missing[name] = str(fault)
+        except NOT_THESE as fault:
+            self.missing[name] = f"the log's values do not fit together: {fault!r}"
+        return otherwise
+
+
+def _span(run: Analysis) -> float:
+    return float(run.truth.time[-1] - run.truth.time[0])
+
+
+def _seed(log: RunLog) -> int:
+    try:
+        return int(log.run.get("seed", 0))
+    except ValueError:
+        seed = log.run["seed"]
+        raise LogError(f"log {log.path}: the seed {seed!r} is not a number") from None
+
+
+def _precision(run: Analysis, figures: Figures) -> dict[str, Any]:
+    def spread(name: str, work: Callable[[], Array]) -> Metrics:
+        return figures.of(name, lambda: rms_and_max(work()), {"rms": None, "max": None})
+
     return {
-        "end_effector_error_m": _or(nothing, lambda: rms_and_max(run.end_effector_error)),
-        "end_effector_target": _or_none(lambda: run.target.kind),
-        "end_effector_tracking_error_m": _or(nothing, lambda: rms_and_max(run.tracking_error)),
-        "vehicle_error_m": _or(nothing, lambda: rms_and_max(run.vehicle_error[1])),
-        "navigation_error_m": _or(nothing, lambda: rms_and_max(run.navigation[1])),
-        "roll_deg": nothing if roll_pitch is None else rms_and_max(roll_pitch[:, 0]),
-        "pitch_deg": nothing if roll_pitch is None else rms_and_max(roll_pitch[:, 1]),
+        "end_effector_error_m": spread("end_effector_error_m", lambda: run.end_effector_error),
+        "end_effector_target": figures.of("end_effector_target", lambda: run.target.kind),
+        "end_effector_tracking_error_m": spread(
+            "end_effector_tracking_error_m", lambda: run.tracking_error
+        ),
+        "vehicle_error_m": spread("vehicle_error_m", lambda: run.vehicle_error[1]),
+        "navigation_error_m": spread("navigation_error_m", lambda: run.navigation[1]),
+        "roll_deg": spread("roll_deg", lambda: run.rpy_deg[:, 0]),
+        "pitch_deg": spread("pitch_deg", lambda: run.rpy_deg[:, 1]),
     }
 
 
-def _effort(run: Analysis) -> dict[str, Any]:
+def _effort(run: Analysis, figures: Figures) -> dict[str, Any]:
+    nothing = {"force_rms_n": None, "moment_rms_nm": None}
     return {
-        "self_disturbance": _or(
-            {"force_rms_n": None, "moment_rms_nm": None}, lambda: self_disturbance(run)
+        "self_disturbance": figures.of("self_disturbance", lambda: self_disturbance(run), nothing),
+        "planner_step_ms": figures.of(
+            "planner_step_ms", lambda: percentiles(run.planner_step_ms), {"p50": None, "p99": None}
         ),
-        "planner_step_ms": percentiles(run.planner_step_ms),
-        "thruster_saturated_fraction": _or_none(
+        "thruster_saturated_fraction": figures.of(
+            "thruster_saturated_fraction",
             # Share of the control ticks in which some thruster is at its limit.
-            lambda: float(np.mean(run.allocation.saturated.any(axis=1)))
+            lambda: float(np.mean(run.allocation.saturated.any(axis=1))),
         ),
-        "thrust_rms_n": _or_none(lambda: float(np.sqrt(np.mean(run.allocation.thrust**2)))),
+        "thrust_rms_n": figures.of(
+            "thrust_rms_n", lambda: float(np.sqrt(np.mean(run.allocation.thrust**2)))
+        ),
     }
 
 
@@ -110,14 +161,3 @@ def self_disturbance(run: Analysis) -> Metrics:
         "force_rms_n": rms_and_max(wrench[:, :3])["rms"],
         "moment_rms_nm": rms_and_max(wrench[:, 3:])["rms"],
     }
-
-
-def _or(otherwise: Any, work: Callable[[], Any]) -> Any:
-    try:
-        return work()
-    except LogError:
-        return otherwise
-
-
-def _or_none(work: Callable[[], Any]) -> Any:
-    return _or(None, work)

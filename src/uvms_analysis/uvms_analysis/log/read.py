@@ -8,11 +8,13 @@ from typing import Any
 import numpy as np
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.log.records import Records, read_records
+from uvms_analysis.log import run_end
+from uvms_analysis.log.definition import UNDECODABLE, log_codec, same_definition
+from uvms_analysis.log.records import Entry, Records, read_records
+from uvms_analysis.log.run_end import RunEnd
 from uvms_core import topics
-from uvms_core.cdr import CdrError, Codec
+from uvms_core.cdr import Codec
 from uvms_core.diagnostics import Status
-from uvms_core.errors import SignalError
 from uvms_core.messages import from_message
 from uvms_core.signals import NANOSECONDS, Array
 from uvms_core.topics import Topic
@@ -52,17 +54,22 @@ class RunLog:
 
     `fault` is empty, or says why the log is incomplete; everything before the break can be read.
     Messages that are not valid signals (such as a NaN in a command) are left out and counted in
-    `rejected`.
+    `rejected`; topics that are not what their name says are left out, too: `unusable` says why.
     """
 
     def __init__(self, records: Records) -> None:
         self._records = records
         self.path = records.path
+        self.faults = tuple(records.faults)
         self.fault = records.fault
+        self.finished = records.finished
         self.attachments = records.attachments
         self.metadata = records.metadata
         self.rejected: dict[str, list[str]] = {}
-        self._numbers = {channel.topic: key for key, channel in records.channels.items()}
+        self.unusable: dict[str, str] = {}
+        self._numbers: dict[str, list[int]] = {}
+        for number, channel in records.channels.items():
+            self._numbers.setdefault(channel.topic, []).append(number)
         self._signals: dict[str, list[Any]] = {}
         self.namespace = self._find_namespace()
 
@@ -83,10 +90,28 @@ class RunLog:
     @property
     def topics(self) -> dict[str, str]:
         """Full names of the topics and their types."""
-        channels = self._records.channels.values()
-        return {
-            channel.topic: self._records.schemas[channel.schema_id].name for channel in channels
-        }
+        return {name: self.channel(name)[0] for name in self._numbers}
+
+    @property
+    def counts(self) -> dict[str, int]:
+        """Number of messages by full topic name."""
+        counts = self._records.counts
+        return {name: sum(counts[n] for n in own) for name, own in self._numbers.items()}
+
+    @property
+    def end(self) -> RunEnd | None:
+        """What is known about the run's end; None where nobody recorded it.
+
+        Raises:
+            LogError: the record is damaged.
+        """
+        record = self.metadata.get(run_end.NAME)
+        if record is None:
+            return None
+        try:
+            return RunEnd.from_metadata(record)
+        except (TypeError, AttributeError) as fault:
+            raise LogError(f"log {self.path}: metadata {run_end.NAME!r}: {fault}") from fault
 
     def text(self, name: str) -> str:
         """An attachment as text.
@@ -94,6 +119,8 @@ class RunLog:
         Raises:
             LogError: the log has none of that name, or it is damaged.
         """
+        if name in self._records.left_out and name not in self.attachments:
+            raise LogError(f"log {self.path}: its attachment {name!r} is damaged and left out")
         if name not in self.attachments:
             known = ", ".join(self.attachments) or "none"
             raise LogError(f"log {self.path}: has no attachment {name!r}; it has {known}")
@@ -126,42 +153,62 @@ class RunLog:
 
     def raw(self, names: Sequence[str] | None = None) -> Iterator[tuple[str, int, bytes]]:
         """Full topic name, stamp and CDR bytes of messages in the order of the file."""
-        wanted = None if names is None else {self._number(name) for name in names}
+        for name, entry in self.entries(names):
+            yield name, entry.stamp, entry.data
+
+    def entries(self, names: Sequence[str] | None = None) -> Iterator[tuple[str, Entry]]:
+        """Full topic name and message, with both of its times, in the order of the file."""
+        wanted = None if names is None else {n for name in names for n in self._known(name)}
         channels = self._records.channels
-        for number, stamp, data in self._records.messages(wanted):
-            yield channels[number].topic, stamp, data
+        for entry in self._records.messages(wanted):
+            yield channels[entry.channel].topic, entry
 
     def channel(self, name: str) -> tuple[str, bytes, dict[str, str]]:
         """Type, schema text and metadata of the channel of a full topic name."""
-        channel = self._records.channels[self._number(name)]
-        schema = self._records.schemas[channel.schema_id]
+        channel = self._records.channels[self._known(name)[0]]
+        schema = self._records.schemas.get(channel.schema_id)
+        if schema is None:  # MCAP allows channels without one
+            return "", b"", dict(channel.metadata)
         return schema.name, schema.data, dict(channel.metadata)
 
     def codec(self, name: str) -> Codec:
-        """The codec of a full topic name, from the log's own definition."""
+        """The codec of a full topic name, from the log's own definition.
+
+        Raises:
+            LogError: the log has no such topic, or its definition cannot be read.
+        """
         type_name, text, _ = self.channel(name)
-        return Codec(type_name, text.decode())
+        return log_codec(f"log {self.path}: {name}", type_name, text)
 
     def signals(self, topic: Topic) -> list[Any]:
         """All signals of a topic, in order.
 
         Raises:
-            LogError: the log has no such topic.
+            LogError: the log has no such topic, or what it has under that name is something else.
         """
         if topic.name not in self._signals:
+            self._known(self.full_name(topic))
             self.load([topic])
+        if topic.name in self.unusable:
+            raise LogError(self.unusable[topic.name])
         return self._signals[topic.name]
 
     def load(self, wanted: Sequence[Topic]) -> None:
-        """Decode several topics in one pass."""
-        fresh = [topic for topic in wanted if topic.name not in self._signals]
-        readers = {self.full_name(topic): (topic, self._decoder(topic)) for topic in fresh}
-        self._signals.update({topic.name: [] for topic in fresh})
+        """Decode several topics in one pass; those that cannot be go to `unusable`."""
+        readers = {}
+        for topic in wanted:
+            if topic.name in self._signals or topic.name in self.unusable:
+                continue
+            try:
+                readers[self.full_name(topic)] = topic, self.decoder(topic)
+                self._signals[topic.name] = []
+            except LogError as fault:
+                self.unusable[topic.name] = str(fault)
         for name, stamp, data in self.raw(list(readers)) if readers else ():
             topic, decode = readers[name]
             try:
                 self._signals[topic.name].append(from_message(topic, decode(data)))
-            except (SignalError, CdrError) as fault:
+            except UNDECODABLE as fault:
                 what = f"{stamp / NANOSECONDS:.3f} s: {fault}"
                 self.rejected.setdefault(topic.name, []).append(what)
 
@@ -177,7 +224,12 @@ class RunLog:
         if not signals or not is_dataclass(signals[0]):
             raise LogError(f"log {self.path}: has no valid message of {topic.name}")
         names = [field.name for field in fields(signals[0]) if field.name != "stamp"]
-        columns = {name: np.array([getattr(one, name) for one in signals]) for name in names}
+        try:
+            columns = {name: np.array([getattr(one, name) for one in signals]) for name in names}
+        except ValueError as fault:
+            raise LogError(
+                f"log {self.path}: the messages of {topic.name} differ in size"
+            ) from fault
         return Series(np.array([one.stamp for one in signals], dtype=np.int64), columns)
 
     def statuses(self, node: str) -> list[Status]:
@@ -185,14 +237,24 @@ class RunLog:
         everything = self.signals(topics.DIAGNOSTICS) if self.has(topics.DIAGNOSTICS) else []
         return [one for one in everything if _node_of(one.name) == node]
 
-    def _decoder(self, topic: Topic) -> Any:
+    def decoder(self, topic: Topic) -> Any:
+        """How to decode the bytes of a topic's messages.
+
+        Raises:
+            LogError: the log has no such topic, or what it has under that name is something else.
+        """
         name = self.full_name(topic)
-        codec, type_name = self.codec(name), self.channel(name)[0]
+        codec, (type_name, text, _) = self.codec(name), self.channel(name)
         if type_name != topic.type:
             raise LogError(f"log {self.path}: {name} is {type_name}, not {topic.type}")
+        channels = [self._records.channels[number] for number in self._numbers[name]]
+        if len({channel.schema_id for channel in channels}) > 1:
+            raise LogError(f"log {self.path}: {name} has messages of more than one type")
+        if not same_definition(type_name, text.decode()):
+            raise LogError(f"log {self.path}: {name}: its {type_name} is not the one known here")
         return codec.decode
 
-    def _number(self, name: str) -> int:
+    def _known(self, name: str) -> list[int]:
         if name not in self._numbers:
             known = ", ".join(sorted(self._numbers)) or "nothing"
             raise LogError(f"log {self.path}: has no topic {name}; it has {known}")

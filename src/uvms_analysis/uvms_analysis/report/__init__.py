@@ -3,7 +3,6 @@
 import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 from matplotlib.figure import Figure
 
@@ -13,7 +12,7 @@ from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import force_figures, motion_figures, style
 from uvms_analysis.report.page import Picture, write_page
 from uvms_analysis.report.scene import draw_scene, scene
-from uvms_analysis.summary import summarise
+from uvms_analysis.summary import NOT_THESE, summarise
 
 __all__ = ["FIGURES", "draw_scene", "report"]
 
@@ -59,19 +58,18 @@ def report(log: str | Path, output: str | Path | None = None) -> Path:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise LogError(f"{folder}: cannot be written: {fault.strerror}") from fault
-    summary = summarise(run, **_from_runner(run))
+    summary = summarise(run, wall_s=_wall_s(run))
     pictures = _draw(Analysis(run), folder)
     return write_page(folder / "report.html", run, summary, pictures)
 
 
-def _from_runner(run: RunLog) -> dict[str, Any]:
-    """Wall time and completion, from the summary beside the log if there is one."""
+def _wall_s(run: RunLog) -> float:
+    """Wall time, which no log knows, from the summary beside it if there is one."""
     beside = run.path.parent / "summary.json"
     try:
-        known = json.loads(beside.read_text(encoding="utf-8"))
-        return {"completed": bool(known["completed"]), "wall_s": float(known["wall_s"])}
+        return float(json.loads(beside.read_text(encoding="utf-8"))["wall_s"])
     except (OSError, ValueError, KeyError, TypeError):
-        return {"completed": not run.fault, "wall_s": 0.0}
+        return 0.0
 
 
 def _draw(run: Analysis, folder: Path) -> list[Picture]:
@@ -83,6 +81,9 @@ def _draw(run: Analysis, folder: Path) -> list[Picture]:
                 draw(run).savefig(path)
         except LogError as fault:
             pictures.append(Picture(name, caption, None, str(fault)))
+        except NOT_THESE as fault:
+            reason = f"the log's values do not fit together: {fault!r}"
+            pictures.append(Picture(name, caption, None, reason))
         else:
             pictures.append(Picture(name, caption, path))
     return pictures

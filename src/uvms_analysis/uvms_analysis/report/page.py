@@ -24,9 +24,11 @@ class Picture:
 
 def write_page(path: Path, log: RunLog, summary: dict[str, Any], pictures: list[Picture]) -> Path:
     """Write the page and return its path."""
-    title = f"{summary['scenario'] or log.path.stem}, seed {summary['seed']}"
+    seed = "unknown" if summary["seed"] is None else summary["seed"]
+    title = f"{summary['scenario'] or log.path.stem}, seed {seed}"
     body = [
-        _head(title, summary),
+        _head(title),
+        _banner(summary),
         _notes(summary),
         _cards(summary),
         *(_figure(picture) for picture in pictures),
@@ -36,7 +38,10 @@ def write_page(path: Path, log: RunLog, summary: dict[str, Any], pictures: list[
         _table(dict(log.run) | {"log": log.path.name}),
         *(_details(name, log) for name in ("config.yaml", "vehicle.yaml")),
     ]
-    path.write_text(_document(title, "\n".join(body)), encoding="utf-8")
+    try:
+        path.write_text(_document(title, "\n".join(body)), encoding="utf-8", errors="replace")
+    except OSError as fault:
+        raise LogError(f"{path}: cannot be written: {fault.strerror}") from fault
     return path
 
 
@@ -61,9 +66,20 @@ def _document(title: str, body: str) -> str:
     )
 
 
-def _head(title: str, summary: dict[str, Any]) -> str:
-    text, kind = ("completed", "good") if summary["completed"] else ("not completed", "bad")
-    return f'<header><h1>{html.escape(title)}</h1><span class="badge {kind}">{text}</span></header>'
+def _head(title: str) -> str:
+    return f"<header><h1>{html.escape(title)}</h1></header>"
+
+
+def _banner(summary: dict[str, Any]) -> str:
+    """One green line, or a red box with the outcome and every reason in words."""
+    word = html.escape(summary["outcome"])
+    if summary["completed"]:
+        return f'<p class="banner good"><strong>Outcome: {word}</strong></p>'
+    reasons = "".join(f"<li>{html.escape(reason)}</li>" for reason in summary["reasons"])
+    return (
+        f'<section class="banner bad" role="alert"><strong>Outcome: {word}. This run is not'
+        f" completed.</strong><ul>{reasons}</ul></section>"
+    )
 
 
 def _notes(summary: dict[str, Any]) -> str:
