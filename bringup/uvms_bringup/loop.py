@@ -11,6 +11,7 @@ from uvms_bringup.scenario import Scenario
 from uvms_control.parts import AllocatorPart, ControllerPart
 from uvms_core import topics
 from uvms_core.part import InProcess, Output, Part
+from uvms_core.plausibility import Plausibility
 from uvms_core.signals import (
     Allocation,
     DisturbanceBudget,
@@ -111,7 +112,7 @@ class Loop:
     def __init__(self, scenario: Scenario, vehicle: Vehicle) -> None:
         self.plant = Plant(vehicle, scenario.plant, scenario.seed)
         self.parts = make_parts(scenario, vehicle)
-        self._process = InProcess(self.parts)
+        self._process = InProcess(self.parts, Plausibility(vehicle))
         self._sensor_topics = in_order_of_publication(vehicle)
         _spare_the_garbage_collector()
 
@@ -125,7 +126,7 @@ class Loop:
         stamp, sensors, truth = self.plant.stamp, self.plant.sense(), self.plant.truth()
         outputs = list(plant_outputs(stamp, sensors, truth, self._sensor_topics))
         for topic, signal in outputs[1:]:  # the clock is a stamp, not a signal
-            self._process.deliver(topic, signal)
+            self._process.admit(topic, signal)
         step_ms: dict[str, float] = {}
         began = time.perf_counter()
         for role, own in self._process.tick(stamp):

@@ -74,7 +74,8 @@ def example(kind: type, rng: np.random.Generator) -> Any:
 
 def names_of(topic: Topic | Action) -> tuple[str, ...]:
     """Names that the topic's values come under."""
-    return THRUSTERS if topic in (topics.THRUSTER_COMMAND, topics.ALLOCATION) else JOINTS
+    by_thruster = (topics.THRUSTER_COMMAND, topics.ALLOCATION, topics.APPLIED_THRUST)
+    return THRUSTERS if topic in by_thruster else JOINTS
 
 
 def carrying() -> list[Topic]:

@@ -2,12 +2,14 @@
 
 from collections.abc import Iterator
 
+import numpy as np
+
 from uvms_control.config import AllocatorConfig, ControlConfig
 from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_core import topics
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
-from uvms_core.signals import Wrench
+from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench
 from uvms_core.tick_gate import Covering, Same, Tick
 from uvms_core.vehicle import Vehicle
 
@@ -19,6 +21,7 @@ class ControllerPart(Part):
     outputs = topics.NODES[topics.CONTROLLER].outputs
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig) -> None:
+        self._vehicle, self._config = vehicle, config
         self.law: ControlLaw = create(config, vehicle)
         self.inputs = {
             topics.ODOMETRY: Same(),
@@ -38,6 +41,15 @@ class ControllerPart(Part):
         yield topics.WRENCH_COMMAND, wrench
         yield topics.JOINT_COMMAND, joints
 
+    def restart(self, reason: str) -> None:
+        """The law begins anew: its integrals and filters are gone."""
+        self.law = create(self._config, self._vehicle)
+
+    def safe(self, tick: Tick) -> Iterator[Output]:
+        """No wrench and no torque."""
+        yield topics.WRENCH_COMMAND, Wrench(tick.stamp, np.zeros(6))
+        yield topics.JOINT_COMMAND, JointCommand(tick.stamp, np.zeros(self._vehicle.n_joints))
+
 
 class AllocatorPart(Part):
     """Commanded wrench in; thrusts and the wrench that they achieve out."""
@@ -46,6 +58,7 @@ class AllocatorPart(Part):
     outputs = topics.NODES[topics.THRUST_ALLOCATOR].outputs
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig) -> None:
+        self._vehicle, self._config = vehicle, config
         self.method: AllocationMethod = create(config, vehicle)
         self.inputs = {topics.WRENCH_COMMAND: Same()}
 
@@ -55,3 +68,15 @@ class AllocatorPart(Part):
         yield topics.THRUSTER_COMMAND, command
         yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, allocation.achieved)
         yield topics.ALLOCATION, allocation
+
+    def restart(self, reason: str) -> None:
+        """The method begins anew, without a thrust before."""
+        self.method = create(self._config, self._vehicle)
+
+    def safe(self, tick: Tick) -> Iterator[Output]:
+        """No thrust."""
+        thrust, none = np.zeros(self._vehicle.n_thrusters), np.zeros(6)
+        yield topics.THRUSTER_COMMAND, ThrusterCommand(tick.stamp, thrust)
+        yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, none)
+        unsaturated = np.zeros(self._vehicle.n_thrusters, dtype=np.bool_)
+        yield topics.ALLOCATION, Allocation(tick.stamp, thrust, none, none, unsaturated)

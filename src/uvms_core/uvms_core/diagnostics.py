@@ -8,13 +8,14 @@ OK, WARN, ERROR, STALE = range(4)
 
 @dataclass(frozen=True)
 class Status:
-    """State of one node at a stamp; values are numbers or texts by key (`step_ms`, ...)."""
+    """State of one node at a stamp (ns); values are numbers or texts by key (`step_ms`, ...)."""
 
     stamp: int
     name: str
     level: int = OK
     message: str = "ok"
     values: Mapping[str, float | int | bool | str] = field(default_factory=dict)
+    run_id: str = ""  # of the run that the node belongs to, "" where it knows of none
 
     def number(self, key: str) -> float:
         """A value as a number; NaN if the status has no such number."""

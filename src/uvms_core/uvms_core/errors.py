@@ -21,6 +21,18 @@ class SignalError(UvmsError):
     """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
 
 
+class ImplausibleError(SignalError):
+    """A signal has a value, or a jump from the one before, that this vehicle cannot have."""
+
+
+class StampError(SignalError):
+    """A stamp is far from the time that the node's other inputs agree on."""
+
+
+class UnsafeOutputError(UvmsError):
+    """A part made an output that is not finite or not possible; it is not published."""
+
+
 class DefinitionError(UvmsError):
     """A message type is not installed, or its definition cannot be read."""
 

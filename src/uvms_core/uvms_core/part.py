@@ -11,7 +11,12 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from graphlib import CycleError, TopologicalSorter
 from typing import Any
 
-from uvms_core.errors import PluginError, UvmsError
+import numpy as np
+
+from uvms_core import topics
+from uvms_core.diagnostics import ERROR, Status
+from uvms_core.errors import PlantDiverged, PluginError, SignalError, UnsafeOutputError, UvmsError
+from uvms_core.plausibility import Plausibility
 from uvms_core.signals import to_seconds
 from uvms_core.tick_gate import Input, Previous, Tick
 from uvms_core.topics import Topic
@@ -53,16 +58,37 @@ class Part(ABC):
         """Values for /diagnostics."""
         return {}
 
+    def trouble(self) -> str | None:
+        """Why what it puts out cannot be relied on, for /diagnostics; None where it can."""
+        return None
+
+    def restart(self, reason: str) -> None:
+        """Begin anew, with the same configuration: its state is not good any more.
+
+        Args:
+            reason: in words, for whoever waits for this part.
+        """
+        return None
+
+    def safe(self, tick: Tick) -> Iterable[Output]:
+        """What to put out at a tick at which the part cannot step, or made rubbish.
+
+        Nothing, by default: whoever reads its outputs then goes to its own safe state.
+        """
+        return ()
+
 
 class InProcess:
     """Hands signals to parts and calls them, without ROS and without waiting.
 
     Args:
         parts: by role; they are called in the order in which their inputs come to be.
+        plausibility: of what comes from outside and of what the parts put out; None: no checks.
     """
 
-    def __init__(self, parts: Mapping[str, Part]) -> None:
+    def __init__(self, parts: Mapping[str, Part], plausibility: Plausibility | None = None) -> None:
         self.order = loop_order(parts)
+        self._plausibility = plausibility
         self._parts = [
             (role, part, [(topic.name, rule) for topic, rule in part.inputs.items()])
             for role, part in ((role, parts[role]) for role in self.order)
@@ -71,6 +97,24 @@ class InProcess:
         for part in parts.values():
             for topic, rule in part.inputs.items():
                 self._rules.setdefault(topic.name, []).append(rule)
+        self._faults: list[str] = []
+        self.refused = 0
+        """Signals from outside that were not used."""
+        self.unsafe = 0
+        """Ticks at which a part made rubbish and its safe output was used instead."""
+
+    def admit(self, topic: Topic, signal: Any) -> None:
+        """Hand over a signal from outside, unless this vehicle cannot have it."""
+        if topic.name not in self._rules:
+            return
+        try:
+            if self._plausibility is not None:
+                self._plausibility.admit(topic, signal)
+        except UvmsError as fault:
+            self.refused += 1
+            self._faults.append(str(fault))
+        else:
+            self.deliver(topic, signal)
 
     def deliver(self, topic: Topic, signal: Any) -> None:
         """Hand a signal to every part that reads its topic."""
@@ -78,15 +122,81 @@ class InProcess:
             rule.push(signal.stamp, signal)
 
     def tick(self, stamp: int) -> Iterator[tuple[str, list[Output]]]:
-        """Call each part whose tick this stamp is; yields role and outputs, already delivered."""
+        """Call each part whose tick this stamp is; yields role and outputs, already delivered.
+
+        What was refused, and parts that made rubbish, are among the outputs as diagnostics.
+        """
         for role, part, rules in self._parts:
             if stamp % part.every:
                 continue
-            inputs = {name: rule.take(stamp) for name, rule in rules}
-            outputs = run_step(role, part, Tick(stamp, inputs))
+            tick = Tick(stamp, {name: rule.take(stamp) for name, rule in rules})
+            outputs = self._step(role, part, tick)
             for topic, signal in outputs:
                 self.deliver(topic, signal)
+            if self._faults:
+                outputs.append(self._diagnosis(role, stamp))
             yield role, outputs
+
+    def _step(self, role: str, part: Part, tick: Tick) -> list[Output]:
+        if self._plausibility is None:
+            return run_step(role, part, tick)
+        outputs, fault = safe_step(role, part, tick, self._plausibility)
+        if isinstance(fault, UnsafeOutputError):
+            self.unsafe += 1
+            self._faults.append(str(fault))
+        elif fault is not None:
+            raise fault
+        return outputs
+
+    def _diagnosis(self, role: str, stamp: int) -> Output:
+        text, self._faults = "; ".join(self._faults), []
+        counts = {"refused": self.refused, "unsafe_outputs": self.unsafe}
+        return topics.DIAGNOSTICS, Status(stamp, role, ERROR, text, counts)
+
+
+def safe_step(
+    role: str, part: Part, tick: Tick, plausibility: Plausibility
+) -> tuple[list[Output], UvmsError | None]:
+    """As `run_step`, but nothing that is not finite or not possible gets out.
+
+    A part that makes rubbish begins anew, so that it does not live on in its state, and its safe
+    output takes the place of what it made.
+
+    Returns:
+        The outputs, and why they are the safe ones where they are: `UnsafeOutputError`, or the
+        error of an input that cannot be used (the part keeps its state then).
+
+    Raises:
+        PluginError: the step fails in any other way.
+    """
+    with np.errstate(all="ignore"):  # rubbish is found and reported below
+        try:
+            if tick.missing:
+                raise SignalError(f"no usable {' and no '.join(tick.missing)}")
+            outputs = run_step(role, part, tick)
+        except (PlantDiverged, PluginError):
+            raise
+        except UnsafeOutputError as fault:
+            return _fall_back(part, tick, plausibility, fault), fault
+        except UvmsError as fault:
+            return _possible(part.safe(tick), plausibility), fault
+        for topic, signal in outputs:
+            if text := plausibility.fault(topic, signal):
+                unsafe = UnsafeOutputError(f"{role} made rubbish and begins anew: {text}")
+                return _fall_back(part, tick, plausibility, unsafe), unsafe
+        return outputs, None
+
+
+def _fall_back(
+    part: Part, tick: Tick, plausibility: Plausibility, fault: UvmsError
+) -> list[Output]:
+    part.restart(str(fault))
+    return _possible(part.safe(tick), plausibility)
+
+
+def _possible(outputs: Iterable[Output], plausibility: Plausibility) -> list[Output]:
+    """Those that may go out."""
+    return [output for output in outputs if plausibility.fault(*output) is None]
 
 
 def run_step(role: str, part: Part, tick: Tick) -> list[Output]:
@@ -94,12 +204,17 @@ def run_step(role: str, part: Part, tick: Tick) -> list[Output]:
 
     Raises:
         UvmsError: an input cannot be used; the part keeps its last good state.
+        UnsafeOutputError: its numbers overflow or cannot be solved for.
         PluginError: its step fails in any other way: what it is made of has a mistake.
     """
     try:
         return list(part.step(tick))
     except UvmsError:
         raise
+    except (np.linalg.LinAlgError, OverflowError, FloatingPointError) as fault:  # of rubbish
+        raise UnsafeOutputError(
+            f"{role} cannot compute its output and begins anew: {type(fault).__name__}: {fault}"
+        ) from fault
     except Exception as fault:  # a class of the user's may raise anything
         where = traceback.extract_tb(fault.__traceback__)[-1]
         raise PluginError(

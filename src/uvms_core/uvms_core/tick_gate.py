@@ -5,16 +5,28 @@ tick when the inputs that are due at its stamp are there. In lockstep that makes
 whatever the order in which messages arrive; in real time the trigger alone releases the tick, with
 the newest of the other inputs, so that a late node does not stop the others (it waits only for an
 input that it has never received). The gate uses neither ROS nor a clock.
+
+A sample that came but cannot be used is excused: the tick does not wait for it, and has the last
+good value instead, as long as that is not too old.
 """
 
 from abc import ABC, abstractmethod
+from bisect import insort
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, is_dataclass, replace
+from operator import itemgetter
 from typing import Any
+
+from uvms_core.checks import MAX_AGE_S, trust
+from uvms_core.signals import to_nanoseconds
 
 DEPTH = 256
 """Samples an input keeps while it waits: 2.5 s of a 100 Hz sensor."""
+KEEP = to_nanoseconds(MAX_AGE_S)
+"""How long the last good value stands in for those that cannot be used, ns: as long as control
+works with any old state."""
+_STAMP = itemgetter(0)
 
 
 class Input(ABC):
@@ -22,10 +34,37 @@ class Input(ABC):
 
     def __init__(self) -> None:
         self._items: deque[tuple[int, Any]] = deque(maxlen=DEPTH)
+        self._excused: list[int] = []
 
-    def push(self, stamp: int, value: Any) -> None:
-        """Store a value; stamps of one input come in order."""
-        self._items.append((stamp, value))
+    def reset(self) -> None:
+        """Forget everything: time begins anew."""
+        self._items.clear()
+        self._excused.clear()
+
+    def push(self, stamp: int, value: Any) -> bool:
+        """Store a value; one that is out of order is put in its place. False for a repeated one."""
+        items = self._items
+        if not items or stamp > items[-1][0]:
+            items.append((stamp, value))
+            return True
+        if any(when == stamp for when, _ in items):
+            return False
+        ordered = list(items)
+        insort(ordered, (stamp, value), key=_STAMP)
+        items.clear()
+        items.extend(ordered)
+        return True
+
+    def excuse(self, stamp: int) -> None:
+        """The value of this stamp came but cannot be used; nobody needs to wait for it."""
+        self._excused = [*self._excused[-DEPTH:], stamp]
+
+    def missing(self, stamp: int) -> bool:
+        """Whether the tick lacks a value of this input, since it was excused and the last is old.
+
+        To be asked before `take`.
+        """
+        return False
 
     def newest(self, stamp: int) -> Any:
         """The newest value at or before the stamp, or None."""
@@ -53,8 +92,27 @@ class Same(Input):
     """Arrives once per tick, with the stamp of the tick."""
 
     def complete(self, stamp: int) -> bool:
-        """Whether the value of exactly this stamp has arrived."""
-        return any(when == stamp for when, _ in self._items)
+        """Whether the value of exactly this stamp has arrived, or is excused."""
+        items = self._items
+        if items and items[-1][0] == stamp:  # the usual case, which is quick
+            return True
+        return any(when == stamp for when, _ in items) or stamp in self._excused
+
+    def missing(self, stamp: int) -> bool:
+        """Whether the value is excused, and the one before it is too old to stand in."""
+        if stamp not in self._excused:
+            return False
+        return not any(stamp - KEEP <= when <= stamp for when, _ in self._items)
+
+    def take(self, stamp: int) -> Any:
+        """The value for the tick; where it is excused, the last good one as of this stamp."""
+        value = super().take(stamp)
+        if self._excused:
+            exact = any(when == stamp for when, _ in self._items)
+            if stamp in self._excused and not exact:
+                value = held(value, stamp)
+            self._excused = [each for each in self._excused if each > stamp]
+        return value
 
 
 class Previous(Input):
@@ -65,8 +123,9 @@ class Previous(Input):
         self._period = period
 
     def complete(self, stamp: int) -> bool:
-        """Whether the value of the previous tick has arrived."""
-        return any(when == stamp - self._period for when, _ in self._items)
+        """Whether the value of the previous tick has arrived, or is excused."""
+        due = stamp - self._period
+        return any(when == due for when, _ in self._items) or due in self._excused
 
     def known(self, stamp: int) -> bool:
         """Always: at the first tick there is none."""
@@ -85,8 +144,21 @@ class Periodic(Input):
         self._period = period
         self._taken = -1
 
+    def reset(self) -> None:
+        """Forget everything: time begins anew."""
+        super().reset()
+        self._taken = -1
+
+    def begin(self, stamp: int) -> None:
+        """The node starts to listen at this stamp: what was due before is not waited for."""
+        self._taken = max(self._taken, stamp - 1)
+
+    def excuse(self, stamp: int) -> None:
+        """The sample of this stamp came but cannot be used: the tick does without."""
+        self._taken = max(self._taken, stamp)
+
     def complete(self, stamp: int) -> bool:
-        """Whether the sample that is due at or before the stamp has arrived."""
+        """Whether the sample that is due at or before the stamp has arrived, or is excused."""
         due = stamp - stamp % self._period
         return due <= self._taken or (bool(self._items) and self._items[-1][0] >= due)
 
@@ -98,7 +170,8 @@ class Periodic(Input):
         """All samples since the last tick, in order."""
         samples = []
         while self._items and self._items[0][0] <= stamp:
-            self._taken, value = self._items.popleft()
+            when, value = self._items.popleft()
+            self._taken = max(self._taken, when)
             samples.append(value)
         return tuple(samples)
 
@@ -107,16 +180,44 @@ class Covering(Input):
     """A value that holds for a time (`value.end`): the newest with stamp <= tick < end."""
 
     def complete(self, stamp: int) -> bool:
-        """Whether a value covers the stamp."""
-        return any(when <= stamp < value.end for when, value in self._items)
+        """Whether a value covers the stamp, or one that would is excused."""
+        if any(when <= stamp < value.end for when, value in self._items):
+            return True
+        return any(when <= stamp for when in self._excused)
+
+    def missing(self, stamp: int) -> bool:
+        """Whether the last good value ended too long ago to stand in."""
+        return bool(self._excused) and not any(
+            when <= stamp < value.end + KEEP for when, value in self._items
+        )
+
+    def take(self, stamp: int) -> Any:
+        """The value for the tick; older ones are dropped."""
+        value = super().take(stamp)
+        if self._excused and value is not None and stamp < value.end:
+            self._excused = [each for each in self._excused if each > stamp]
+        return value
+
+
+def held(value: Any, stamp: int) -> Any:
+    """A checked signal as of a later stamp, as if it had not changed since."""
+    if is_dataclass(value) and not isinstance(value, type) and hasattr(value, "stamp"):
+        return trust(replace(value, stamp=stamp))
+    return value
 
 
 @dataclass(frozen=True)
 class Tick:
-    """A stamp and the inputs that belong to it, by name."""
+    """A stamp and the inputs that belong to it, by name.
+
+    Attributes:
+        missing: inputs that the tick lacks, since what came cannot be used and the last good value
+            is too old; the part cannot step, and puts out what is safe.
+    """
 
     stamp: int
     inputs: Mapping[str, Any]
+    missing: tuple[str, ...] = ()
 
     def __getitem__(self, name: str) -> Any:
         return self.inputs[name]
@@ -148,22 +249,75 @@ class TickGate:
         self._in_loop = in_loop
         self._every = every
         self._open: deque[int] = deque()
-        self._broken = True  # no tick before: its feedback is not waited for
-        self._last = -1
         self.abandoned = 0
         self.late = 0
+        self.duplicates = 0
+        self.held = 0
+        self._begin()
+
+    def _begin(self) -> None:
+        self._open.clear()
+        self._broken = True  # no tick before: its feedback is not waited for
+        self._last = -1
+        self._begun = False
+        self._excuses = False
+
+    def reset(self) -> None:
+        """Forget all inputs and open ticks; the counts go on."""
+        for item in self._inputs.values():
+            item.reset()
+        self._begin()
 
     def push(self, name: str, stamp: int, value: Any) -> list[Tick]:
         """Take an input; returns the ticks that it completes, in order."""
-        if name == self._trigger and stamp % self._every == 0:
-            if stamp <= self._last:
-                self.late += 1
-                return []
-            self._last = stamp
-            self._abandon()
-            self._open.append(stamp)
-        self._inputs[name].push(stamp, value)
+        if not self._begun:
+            self._listen_from(stamp)
+        is_late = name == self._trigger and stamp % self._every == 0 and not self._is_new(stamp)
+        if not self._inputs[name].push(stamp, value):
+            self.duplicates += 1
+        return [] if is_late else self._release()
+
+    def _listen_from(self, stamp: int) -> None:
+        self._begun = True
+        for item in self._inputs.values():
+            if isinstance(item, Periodic):
+                item.begin(stamp)
+
+    def excuse(self, name: str, stamp: int) -> list[Tick]:
+        """An input of this stamp came but cannot be used; returns the ticks that go on without.
+
+        They have its last good value, unless that is too old.
+        """
+        if name == self._trigger and stamp % self._every == 0 and not self._is_new(stamp):
+            return []
+        self._excuses = True
+        self.held += 1
+        self._inputs[name].excuse(stamp)
         return self._release()
+
+    def _is_new(self, stamp: int) -> bool:
+        if stamp <= self._last:
+            self.late += 1
+            return False
+        self._last = stamp
+        self._abandon()
+        self._open.append(stamp)
+        return True
+
+    @property
+    def required(self) -> tuple[str, ...]:
+        """Names of the inputs without which there is never a tick."""
+        return tuple(
+            name for name, item in self._inputs.items() if not isinstance(item, Periodic | Previous)
+        )
+
+    def waiting(self) -> list[str]:
+        """Names of the inputs that the next tick waits for; the trigger where none is open."""
+        if not self._open:
+            return [self._trigger]
+        stamp = self._open[0]
+        has = self._has if self._lockstep else (lambda item, stamp: item.known(stamp))
+        return [name for name, item in self._inputs.items() if not has(item, stamp)]
 
     def _abandon(self) -> None:
         if self._open and self._in_loop:
@@ -179,9 +333,13 @@ class TickGate:
         while self._open and self._complete(self._open[0]):
             stamp = self._open.popleft()
             self._broken = False
+            missing = self._missing(stamp) if self._excuses else ()
             inputs = {name: item.take(stamp) for name, item in self._inputs.items()}
-            released.append(Tick(stamp, inputs))
+            released.append(Tick(stamp, inputs, missing))
         return released
+
+    def _missing(self, stamp: int) -> tuple[str, ...]:
+        return tuple(name for name, item in self._inputs.items() if item.missing(stamp))
 
     def _complete(self, stamp: int) -> bool:
         inputs = self._inputs.values()

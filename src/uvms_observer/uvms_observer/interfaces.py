@@ -41,7 +41,11 @@ class ObserverLaw(Protocol):
 
 
 class NavigationEstimator(Protocol):
-    """Estimates the vehicle's motion from the samples of its sensors."""
+    """Estimates the vehicle's motion from the samples of its sensors.
+
+    A method `resume(estimate: Odometry)`, where there is one, is called before the first step of a
+    filter that begins in the middle of a run: it begins there, as uncertain as the estimate says.
+    """
 
     @abstractmethod
     def step_screened(

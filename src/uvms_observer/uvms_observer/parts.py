@@ -2,18 +2,26 @@
 
 from collections.abc import Iterator, Sequence
 
+import numpy as np
+
 from uvms_core import topics
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.sensors import INERTIAL, sensor_types
-from uvms_core.signals import to_nanoseconds
-from uvms_core.tick_gate import Periodic, Previous, Same, Tick
+from uvms_core.signals import DisturbanceBudget, Odometry, Wrench, to_nanoseconds
+from uvms_core.tick_gate import KEEP, Periodic, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Sensor
 from uvms_observer.disturbance import ObserverConfig
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig
+from uvms_observer.navigation.resume import carried, fits, is_in_the_middle, lost
+
+CERTAIN = 10.0
+"""The position is known again within this many std of a GPS fix, and as many metres."""
+REMEMBERED = 4
+"""Estimates from before that are kept: of the node's start, and of the last jumps of time."""
 
 
 class NavigationPart(Part):
@@ -29,6 +37,7 @@ class NavigationPart(Part):
     outputs = topics.NODES[topics.NAVIGATION].outputs
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig, period: int) -> None:
+        self._vehicle, self._config = vehicle, config
         self.filter: NavigationEstimator = create(config, vehicle)
         self.every = period
         used = [sensor for sensor in sensor_types(vehicle) if sensor.navigation]
@@ -38,12 +47,69 @@ class NavigationPart(Part):
             sensor.topic: Periodic(sample_period(sections[sensor.name])) for sensor in used
         }
         self._faults: Sequence[UvmsError] = ()
+        self._begun = False
+        self._known = True
+        self._certain = CERTAIN * vehicle.sensors.gps.horizontal_noise_m + CERTAIN
+        self._remembered: list[Odometry] = []
+        self._good: Odometry | None = None
+        self.estimate: Odometry | None = None
+        """The last one; `restart` drops it, as it is called where it was rubbish."""
+
+    def remember(self, estimate: Odometry) -> None:
+        """An estimate from before, to go on from if it fits the time at which the filter begins."""
+        self._remembered = [*self._remembered[-REMEMBERED:], estimate]
 
     def step(self, tick: Tick) -> Iterator[Output]:
         """One step of the filter; samples that it refuses are left out."""
         samples = {name: tick[topic] for name, topic in self._sensors.items()}
+        self._good = self.estimate or self._good  # it was not rubbish, or there was a restart
+        if not self._begun:
+            self._begin(tick.stamp)
         odometry, self._faults = self.filter.step_screened(tick.stamp, samples)
+        self._begun, self.estimate = True, odometry
         yield topics.ODOMETRY, odometry
+        if not self._known:
+            variance = odometry.pose_covariance[0, 0] + odometry.pose_covariance[1, 1]
+            self._known = float(np.sqrt(variance)) < self._certain
+
+    def _begin(self, stamp: int) -> None:
+        """Start the filter where it was, if that is known, or say that it is not."""
+        resume = getattr(self.filter, "resume", None)
+        if estimates := [each for each in self._remembered if fits(each, stamp)]:
+            newest = max(estimates, key=lambda each: each.stamp)
+            self._known = resume is not None
+            if resume is not None:
+                resume(carried(newest, stamp))
+        elif is_in_the_middle(stamp):
+            self._known = False
+            if resume is not None:
+                resume(lost(stamp, np.array(self._config.initial_position_m)))
+
+    def restart(self, reason: str) -> None:
+        """A filter that goes on from the last good estimate, if that fits its time."""
+        if self._good is not None:
+            self.remember(self._good)
+        self.filter = create(self._config, self._vehicle)
+        self._begun, self._known, self._good, self.estimate = False, True, None, None
+
+    def trouble(self) -> str | None:
+        """Where the filter does not know the position."""
+        if self._known:
+            return None
+        return (
+            "started in the middle of a run without an estimate: the position is not known"
+            " before one is measured"
+        )
+
+    def safe(self, tick: Tick) -> Iterator[Output]:
+        """The last good estimate, straight ahead, and less certain; nothing where it is too old."""
+        known = [*self._remembered, self._good, self.estimate]
+        recent = [
+            each for each in known if each is not None and 0 <= tick.stamp - each.stamp <= KEEP
+        ]
+        if recent:
+            newest = max(recent, key=lambda each: each.stamp)
+            yield topics.ODOMETRY, carried(newest, tick.stamp)
 
     def take_faults(self) -> Sequence[UvmsError]:
         """Samples that the last step left out."""
@@ -52,7 +118,12 @@ class NavigationPart(Part):
 
     def status(self) -> dict[str, int | float]:
         """Counters and uncertainty of the filter."""
-        return self.filter.status()
+        status = self.filter.status()
+        return {_STATUS.get(name, name): value for name, value in status.items()}
+
+
+_STATUS = {"refused": "samples_refused", "late": "samples_late"}
+"""What the filter counts, apart from what its node does."""
 
 
 def sample_period(sensor: Sensor) -> int:
@@ -67,6 +138,9 @@ class ObserverPart(Part):
     outputs = topics.NODES[topics.DISTURBANCE_OBSERVER].outputs
 
     def __init__(self, vehicle: Vehicle, config: ObserverConfig, period: int) -> None:
+        self._vehicle, self._config = vehicle, config
+        self._good: Wrench | None = None
+        self._last: Wrench | None = None
         self.law: ObserverLaw = create(config, vehicle)
         self.inputs = {
             topics.ODOMETRY: Same(),
@@ -81,5 +155,19 @@ class ObserverPart(Part):
             tick[topics.JOINT_STATES.name],
             tick[topics.WRENCH_ACHIEVED.name],
         )
+        self._good, self._last = self._last or self._good, total
         yield topics.DISTURBANCE, total
         yield topics.DISTURBANCE_BUDGET, budget
+
+    def restart(self, reason: str) -> None:
+        """The observer begins anew, with no external wrench."""
+        self._last = None  # it may be rubbish
+        self.law = create(self._config, self._vehicle)
+
+    def safe(self, tick: Tick) -> Iterator[Output]:
+        """The last good disturbance for a while, then none: a step would jerk the vehicle."""
+        last, none = self._last or self._good, np.zeros(6)
+        is_recent = last is not None and 0 <= tick.stamp - last.stamp <= KEEP
+        total = last.wrench if last is not None and is_recent else none
+        yield topics.DISTURBANCE, Wrench(tick.stamp, total)
+        yield topics.DISTURBANCE_BUDGET, DisturbanceBudget(tick.stamp, none, none, none)

@@ -97,6 +97,15 @@ class MotionPlanner:
             self._end_goal(False, "cancelled")
 
     @property
+    def has_goal(self) -> bool:
+        """Whether somebody waits for the end of a goal."""
+        return self._goal is not None or self._finished is not None
+
+    def give_up(self, reason: str) -> None:
+        """Say with the next step that the goal of a planner before this one came to nothing."""
+        self._finished = GoalResult(False, reason, 0.0)
+
+    @property
     def end_effector(self) -> tuple[Array, Array]:
         """Position (3,) and quaternion (4,) of the tool where the next goal would begin.
 

@@ -7,6 +7,7 @@ and 0.06 to 0.07 (odometry and a reference; `make bench ARGS=cdr`).
 
 from uvms_core.cdr.codec import Codec, codec
 from uvms_core.cdr.definitions import schema_text, type_hash
+from uvms_core.cdr.stamp import stamp_in
 from uvms_core.errors import CdrError, DefinitionError
 
-__all__ = ["CdrError", "Codec", "DefinitionError", "codec", "schema_text", "type_hash"]
+__all__ = ["CdrError", "Codec", "DefinitionError", "codec", "schema_text", "stamp_in", "type_hash"]

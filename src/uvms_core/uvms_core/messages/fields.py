@@ -16,17 +16,27 @@ from uvms_core.errors import SignalError
 from uvms_core.signals import NANOSECONDS, Array, to_seconds
 from uvms_core.topic import Action, Topic
 
+_LONGEST_ECHO = 200
+
 
 def stamp_of(time: Any) -> int:
     """A builtin_interfaces Time or Duration in nanoseconds."""
+    if time.nanosec >= NANOSECONDS:
+        raise SignalError(f"a stamp has {time.nanosec} nanosec; it must be below {NANOSECONDS}")
     return time.sec * NANOSECONDS + time.nanosec
+
+
+def _short(text: str) -> str:
+    """A text from outside as far as a message can hold it."""
+    return text if len(text) <= _LONGEST_ECHO else f"{text[:_LONGEST_ECHO]}..."
 
 
 def check_frame(topic: Topic, header: Any) -> None:
     """The frame id must be the topic's own."""
     if header.frame_id != topic.frame:
         raise SignalError(
-            f"{topic.name}: header.frame_id is {header.frame_id!r}; it must be {topic.frame!r}"
+            f"{topic.name}: header.frame_id is {_short(header.frame_id)!r};"
+            f" it must be {topic.frame!r}"
         )
 
 
@@ -34,7 +44,7 @@ def check_child_frame(topic: Topic, frame: str) -> None:
     """The child frame id must be the topic's own."""
     if frame != topic.child_frame:
         raise SignalError(
-            f"{topic.name}: child_frame_id is {frame!r}; it must be {topic.child_frame!r}"
+            f"{topic.name}: child_frame_id is {_short(frame)!r}; it must be {topic.child_frame!r}"
         )
 
 
@@ -116,7 +126,7 @@ def order(topic: Topic | Action, path: str, given: Sequence[str], names: Sequenc
         return slice(None)
     if sorted(given) != sorted(names):
         raise SignalError(
-            f"{topic.name}: {path} is {', '.join(given) or '(empty)'}; "
+            f"{topic.name}: {path} is {_short(', '.join(given)) or '(empty)'}; "
             f"it must name {', '.join(names)}"
         )
     where = {name: index for index, name in enumerate(given)}

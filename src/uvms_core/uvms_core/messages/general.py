@@ -30,7 +30,7 @@ def status_to(topic: Topic, status: Status, names: Sequence[str]) -> Plain:
         "level": status.level,
         "name": status.name,
         "message": status.message,
-        "hardware_id": "",
+        "hardware_id": status.run_id,
         "values": values,
     }
     return {"header": parts.header(topic, status.stamp), "status": [one]}
@@ -47,4 +47,5 @@ def status_from(topic: Topic, msg: Any, names: Sequence[str]) -> Status:
     one = msg.status[0]
     level = one.level[0] if isinstance(one.level, bytes) else one.level
     values = {item.key: item.value for item in one.values}
-    return Status(fields.stamp_of(msg.header.stamp), one.name, level, one.message, values)
+    stamp = fields.stamp_of(msg.header.stamp)
+    return Status(stamp, one.name, level, one.message, values, one.hardware_id)

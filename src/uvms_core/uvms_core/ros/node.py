@@ -1,10 +1,12 @@
 """What our nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
 import json
-from collections.abc import Callable, Mapping, Sequence
+import time
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
 from typing import Any, Literal, TypeVar
 
+import numpy as np
 from pydantic import Field
 from rclpy.node import Node
 from rclpy.publisher import Publisher
@@ -12,22 +14,29 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_srvs.srv import Trigger
 
 from uvms_core import diagnostics, topics
-from uvms_core.cdr import codec
+from uvms_core.cdr import codec, stamp_in
 from uvms_core.config import Config
 from uvms_core.diagnostics import Status
-from uvms_core.errors import PlantDiverged, PluginError, UvmsError
+from uvms_core.errors import PlantDiverged, PluginError, SignalError, UvmsError
+from uvms_core.intake import Intake
 from uvms_core.messages import from_message, to_message
+from uvms_core.plausibility import Plausibility
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.parameters import declare_config
 from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
+from uvms_core.ros.watchdog import LOOK_S, Watchdog
 from uvms_core.signals import NANOSECONDS, to_nanoseconds
-from uvms_core.tick_gate import Input, Tick, TickGate
+from uvms_core.tick_gate import Covering, Input, Tick, TickGate
+from uvms_core.timeline import Jump, Timeline
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.topics import Qos, Topic
 from uvms_core.vehicle import Vehicle, load_vehicle
 
 C = TypeVar("C", bound=Config)
 DIAGNOSTICS_PERIOD = NANOSECONDS
+COMPLAINTS_S = 0.2
+"""Wall time between two reports of inputs that are refused, s: a flood of rubbish must not become
+one of diagnostics. Every one is counted."""
 
 
 def qos_profile(qos: Qos) -> QoSProfile:
@@ -51,6 +60,9 @@ class NodeConfig(Config):
         "newest); the same for all nodes",
     )
     control_period_s: ControlPeriod = CONTROL_PERIOD_S
+    run_id: str = Field(
+        "", description="id of the run that the node belongs to, which its diagnostics carry"
+    )
 
 
 class UvmsNode(Node):
@@ -74,6 +86,7 @@ class UvmsNode(Node):
         common = self.config(NodeConfig)
         self.vehicle: Vehicle = load_vehicle(common.vehicle_file or None)
         self.seed = common.seed
+        self.run_id = common.run_id
         self.lockstep = common.pace == "lockstep"
         self.period = to_nanoseconds(common.control_period_s)
         self.graph = topics.nodes(self.vehicle)
@@ -86,9 +99,13 @@ class UvmsNode(Node):
         self._diagnostics = self._sender(topics.DIAGNOSTICS)
         self._status = Status(0, name)
         self._reported = -DIAGNOSTICS_PERIOD
+        self._complained = 0.0
         self._refused = 0
-        self._gate: TickGate | None = None
+        self.plausibility = Plausibility(self.vehicle)
+        self._intake: Intake | None = None
+        self._watchdog = Watchdog(time.monotonic())
         self._receivers: dict[Topic, Any] = {}
+        self._readers: dict[str, Callable[[bytes], Any]] = {}
         self.create_service(Trigger, f"{name}/ready", self._answer_ready)
         self.create_service(Trigger, f"{name}/sent", self._answer_sent)
 
@@ -109,21 +126,133 @@ class UvmsNode(Node):
         `in_loop` and `every` are as in `TickGate`.
         """
         by_name = {topic.name: rule for topic, rule in inputs.items()}
-        self._gate = TickGate(by_name, trigger.name, self.lockstep, in_loop, every)
+        gate = TickGate(by_name, trigger.name, self.lockstep, in_loop, every)
+        plans = [topic.name for topic, rule in inputs.items() if isinstance(rule, Covering)]
+        timeline = Timeline(self.period, plans)
+        self._intake = Intake(gate, timeline, self.plausibility, self.begin_anew)
         self._on_tick = on_tick
         for topic in inputs:
-            self.listen(topic, partial(self._admit, topic))
+            self._subscribe(topic, partial(self._receive, self._intake, topic))
 
     def listen(self, topic: Topic, callback: Callable[[Any], None]) -> None:
-        """Subscribe; the callback gets checked signals, and its faults are reported."""
-        names, wire = self.names_of(topic), codec(topic.type)
+        """Subscribe; the callback gets checked and possible signals, and its faults are reported.
 
-        def receive(data: bytes) -> None:
-            self.guard(lambda: callback(from_message(topic, wire.decode(data), names)))
+        The topic is not an input of the node's ticks; see `connect`.
+        """
+        read = self._reader(topic)
 
+        def take(data: bytes) -> None:
+            with np.errstate(all="ignore"):  # what overflows is refused
+                signal = read(data)
+                if topic.signal is not int and topic.signal is not Status:
+                    self.plausibility.admit(topic, signal)
+            callback(signal)
+
+        self._subscribe(topic, lambda data: self.guard(lambda: take(data)))
+
+    def _subscribe(self, topic: Topic, receive: Callable[[bytes], None]) -> None:
         self._receivers[topic] = self.create_subscription(
             message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
         )
+
+    def _reader(self, topic: Topic) -> Callable[[bytes], Any]:
+        """From bytes to a signal; raises UvmsError for whatever is not one."""
+        names, wire = self.names_of(topic), codec(topic.type)
+
+        def read(data: bytes) -> Any:
+            try:
+                return from_message(topic, wire.decode(data), names)
+            except UvmsError:
+                raise
+            except Exception as fault:  # a sensor of another package converts in its own way
+                raise SignalError(f"{topic.name}: cannot be read: {fault!r}") from fault
+
+        return read
+
+    def _receive(self, intake: Intake, topic: Topic, data: bytes) -> None:
+        """A message of an input of the ticks has come."""
+        self.guard(lambda: self._take_in(intake, topic, data))
+
+    def _take_in(self, intake: Intake, topic: Topic, data: bytes) -> None:
+        wall = time.monotonic()
+        with np.errstate(all="ignore"):  # what overflows is refused
+            try:
+                signal = self._read_input(topic, data)
+            except UvmsError as fault:
+                self.refuse(self._status.stamp, [fault])
+                self._step_through(intake, intake.take_unreadable(topic, stamp_in(data)))
+            else:
+                self._step_through(intake, intake.take(topic, signal, wall))
+        if self._watchdog.is_due(wall):
+            self.on_wake()
+
+    def _read_input(self, topic: Topic, data: bytes) -> Any:
+        read = self._readers.get(topic.name)
+        if read is None:
+            read = self._readers[topic.name] = self._reader(topic)
+        return read(data)
+
+    def _step_through(self, intake: Intake, ticks: Iterable[Tick]) -> None:
+        for tick in ticks:
+            self._watchdog.ticked()
+            self._status = Status(tick.stamp, self.get_name(), run_id=self.run_id)
+            self._on_tick(tick)
+            self.report_each_second(tick.stamp)
+        if intake.faults:
+            faults, intake.faults = intake.faults, []
+            self.refuse(self._status.stamp, faults)
+        if intake.news:
+            news, intake.news = intake.news, []
+            for text in news:
+                self.complain(intake.timeline.now or 0, diagnostics.WARN, text)
+
+    def begin_anew(self, jump: Jump) -> None:
+        """Time has jumped; a subclass with a state forgets it."""
+
+    def more_counts(self) -> dict[str, int]:
+        """Further counts for /diagnostics."""
+        return {}
+
+    def deadline(self) -> float | None:
+        """When the node looks after itself, monotonic wall time in s."""
+        return None if self._intake is None else self._watchdog.due
+
+    def on_wake(self) -> None:
+        """Take what nothing contradicts, and say what the node waits for if it is silent."""
+        wall, intake = time.monotonic(), self._intake
+        self._watchdog.due = wall + LOOK_S
+        if intake is None:
+            return
+        self.guard(lambda: self._step_through(intake, intake.poll(wall)))
+        level = self._watchdog.silent_level(wall)
+        if level is not None:
+            self.report(intake.timeline.now or 0, level, self._waiting(intake))
+
+    def _waiting(self, intake: Intake) -> str:
+        """What the node waits for, and what it has, with the topics' full names."""
+        newest = intake.timeline.newest
+        lacks = intake.gate.waiting()
+        lacks += [t.name for t in self._inputs_of(intake) if t.name not in [*newest, *lacks]]
+        parts = [self._lacking(name, newest.get(name)) for name in lacks]
+        has = [
+            f"{self._full_name(name)} to {1e-9 * stamp:.3f} s"
+            for name, stamp in newest.items()
+            if name not in lacks
+        ]
+        return f"waiting for {', '.join(parts)}{'; has ' if has else ''}{', '.join(has)}"
+
+    def _inputs_of(self, intake: Intake) -> list[Topic]:
+        return [topic for topic in self._receivers if topic.name in intake.gate.required]
+
+    def _lacking(self, name: str, newest: int | None) -> str:
+        full = self._full_name(name)
+        state = "nothing yet" if newest is None else f"newest {1e-9 * newest:.3f} s"
+        nobody = "" if self.count_publishers(full) else ", nobody publishes it"
+        return f"{full} ({state}{nobody})"
+
+    def _full_name(self, name: str) -> str:
+        """The name of a topic on the graph, with namespace and remappings."""
+        return next(sub.topic_name for t, sub in self._receivers.items() if t.name == name)
 
     def send(self, topic: Topic, signal: Any) -> None:
         """Publish a signal on its topic."""
@@ -146,25 +275,39 @@ class UvmsNode(Node):
         """Log, count and report inputs that are not used."""
         for fault in faults:
             self._refused += 1
-            self.get_logger().error(str(fault), throttle_duration_sec=1.0)
-            self.report(stamp, diagnostics.ERROR, str(fault))
+            self.complain(stamp, diagnostics.ERROR, str(fault))
+
+    def complain(self, stamp: int, level: int, text: str) -> None:
+        """Log and report a fault, not more often than anybody can read."""
+        log = self.get_logger()
+        if level == diagnostics.ERROR:
+            log.error(text, throttle_duration_sec=1.0)
+        else:
+            log.warning(text, throttle_duration_sec=1.0)
+        wall = time.monotonic()
+        if wall - self._complained >= COMPLAINTS_S or level != self._status.level:
+            self._complained = wall
+            self.report(stamp, level, text)
 
     def report(
         self, stamp: int, level: int = diagnostics.OK, message: str = "ok", **values: Any
     ) -> None:
         """Publish this node's state on /diagnostics."""
-        gate = self._gate
-        counts = {"refused": self._refused}
-        if gate is not None:
-            counts |= {"abandoned_ticks": gate.abandoned, "late": gate.late}
-        self._status = Status(stamp, self.get_name(), level, message, counts | values)
+        counts = {"refused": self._refused, **self.more_counts()}
+        if self._intake is not None:
+            counts |= self._intake.counts
+        name = self.get_name()
+        self._status = Status(stamp, name, level, message, counts | values, self.run_id)
         self._diagnostics(self._status)
         self._reported = stamp
+        self._watchdog.said(time.monotonic())
 
-    def report_each_second(self, stamp: int, **values: Any) -> None:
+    def report_each_second(
+        self, stamp: int, level: int = diagnostics.OK, message: str = "ok", **values: Any
+    ) -> None:
         """As `report`, at most once a second of simulation time."""
-        if stamp - self._reported >= DIAGNOSTICS_PERIOD:
-            self.report(stamp, **values)
+        if not 0 <= stamp - self._reported < DIAGNOSTICS_PERIOD:
+            self.report(stamp, level, message, **values)
 
     def names_of(self, topic: Topic) -> tuple[str, ...]:
         """Names of the topic's values: of thrusters or of joints."""
@@ -191,12 +334,6 @@ class UvmsNode(Node):
             if found < max(there, 1 if topic in self._needed else 0):
                 lacks.append(_lack(nobody_reads(topic), there, found))
         return lacks
-
-    def _admit(self, topic: Topic, signal: Any) -> None:
-        for tick in self._gate.push(topic.name, signal.stamp, signal) if self._gate else ():
-            self._status = Status(tick.stamp, self.get_name())
-            self._on_tick(tick)
-            self.report_each_second(tick.stamp)
 
     def _sender(self, topic: Topic) -> Callable[[Any], None]:
         names, wire = self.names_of(topic), codec(topic.type)

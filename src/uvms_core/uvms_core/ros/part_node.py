@@ -4,18 +4,26 @@ import time
 from abc import abstractmethod
 from typing import Any
 
-from uvms_core.part import Part, run_step
+from uvms_core import diagnostics
+from uvms_core.errors import UnsafeOutputError
+from uvms_core.part import Part, safe_step
 from uvms_core.ros.node import UvmsNode
 from uvms_core.tick_gate import Tick
+from uvms_core.timeline import Jump
 
 
 class PartNode(UvmsNode):
-    """Runs a part on the topics that it declares."""
+    """Runs a part on the topics that it declares.
+
+    Nothing that is not finite or not possible is ever published: where the part makes such a thing,
+    it begins anew and its safe output is published instead.
+    """
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self.part = self.make_part()
         self.step_ms = 0.0  # wall time of the last step
+        self.unsafe_outputs = 0
         part = self.part
         self.connect(part.inputs, part.trigger, self.take_tick, part.in_loop, part.every)
 
@@ -26,8 +34,29 @@ class PartNode(UvmsNode):
     def take_tick(self, tick: Tick) -> None:
         """Step the part and publish; samples that it left out are reported."""
         began = time.perf_counter()
-        for topic, signal in run_step(self.role, self.part, tick):
+        outputs, fault = safe_step(self.role, self.part, tick, self.plausibility)
+        for topic, signal in outputs:
             self.send(topic, signal)
         self.step_ms = 1e3 * (time.perf_counter() - began)
+        if isinstance(fault, UnsafeOutputError):
+            self.unsafe_outputs += 1
+            self.complain(tick.stamp, diagnostics.ERROR, str(fault))
+        elif fault is not None:
+            self.refuse(tick.stamp, [fault])
         self.refuse(tick.stamp, self.part.take_faults())
-        self.report_each_second(tick.stamp, step_ms=self.step_ms, **self.part.status())
+        trouble = self.part.trouble()
+        self.report_each_second(
+            tick.stamp,
+            diagnostics.OK if trouble is None else diagnostics.ERROR,
+            trouble or "ok",
+            step_ms=self.step_ms,
+            **self.part.status(),
+        )
+
+    def begin_anew(self, jump: Jump) -> None:
+        """Time has jumped: the part begins anew."""
+        self.part.restart(str(jump))
+
+    def more_counts(self) -> dict[str, int]:
+        """Ticks at which the part made rubbish."""
+        return {"unsafe_outputs": self.unsafe_outputs}

@@ -2,21 +2,29 @@
 
 import numpy as np
 
-from uvms_core.signals import ImuSample
+from uvms_core.signals import Array, ImuSample, Odometry
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,
+    POSITION,
     VELOCITY,
     NavigationState,
     empty_state,
 )
 
 
-def aligned(sample: ImuSample, imu: Installation, config: NavigationConfig) -> NavigationState:
+def aligned(
+    sample: ImuSample,
+    imu: Installation,
+    config: NavigationConfig,
+    start: Odometry | None = None,
+) -> NavigationState:
     """At rest at the configured position, with the measured attitude.
+
+    With a `start`, its position and velocity, as uncertain as it says.
 
     The attitude is off by the gyrocompass's noise and by its bias, so that it starts correlated
     with the bias: dtheta = -R (b_c + n).
@@ -30,8 +38,21 @@ def aligned(sample: ImuSample, imu: Installation, config: NavigationConfig) -> N
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2
     P[range(9, 18), range(9, 18)] = imu.process.bias_variance
+    if start is not None:
+        _go_on_from(start, state, sample, imu, R)
     bias = np.diag(imu.process.bias_variance[6:])
     P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(imu.attitude_variance)) @ R.T
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias
     P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T
     return state
+
+
+def _go_on_from(
+    start: Odometry, state: NavigationState, sample: ImuSample, imu: Installation, R: Array
+) -> None:
+    """Position and velocity of the IMU from those of the body origin, in place."""
+    velocity = start.nu[:3] - np.cross(sample.angular_velocity, imu.body)
+    state.position[:] = start.position - R @ imu.body
+    state.velocity[:] = R @ velocity
+    state.covariance[POSITION, POSITION] = start.pose_covariance[:3, :3]
+    state.covariance[VELOCITY, VELOCITY] = R @ start.twist_covariance[:3, :3] @ R.T

@@ -41,6 +41,7 @@ class Estimator:
         self.tallies = dict.fromkeys(measurements, Tally())
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
+        self.start: Odometry | None = None  # where to begin; None: as configured
         self._rate = np.zeros(3)  # readings of the last IMU sample
         self._force = np.zeros(3)
 
@@ -74,7 +75,7 @@ class Estimator:
         return odometry(self.time or 0, self.state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        self.state = aligned(sample, self._imu, self._config)
+        self.state = aligned(sample, self._imu, self._config, self.start)
         for each in self._measurements.values():
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance

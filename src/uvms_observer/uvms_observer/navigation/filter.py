@@ -55,6 +55,14 @@ class NavigationFilter:
         """A copy of the state and its covariance."""
         return self._estimator.state.copied()
 
+    def resume(self, estimate: Odometry) -> None:
+        """Begin with this estimate instead of the configured position; before the first step.
+
+        Its position and velocity are taken with their covariance, the attitude from the first IMU
+        sample.
+        """
+        self._estimator.start = estimate
+
     def step(
         self,
         stamp: int,

@@ -1,21 +1,57 @@
 """Node `navigation`: the extended Kalman filter on the sensors' topics."""
 
+from pathlib import Path
+
+from pydantic import Field
+
 from uvms_core import topics
+from uvms_core.config import Config
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
+from uvms_core.tick_gate import Tick
 from uvms_observer import NavigationConfig
+from uvms_observer.nodes.checkpoint import Checkpoint
 from uvms_observer.parts import NavigationPart
+
+
+class CheckpointConfig(Config):
+    """Where the node keeps its estimate."""
+
+    checkpoint_file: str = Field(
+        "",
+        description="file to which the node writes its estimate once a second, and from which it"
+        " goes on when it is started again in the same run; empty: none",
+    )
 
 
 class NavigationNode(PartNode):
     """sensors/* in, odometry out, once a control tick."""
 
     role = topics.NAVIGATION
-    configurations = (NavigationConfig,)
+    configurations = (NavigationConfig, CheckpointConfig)
+    part: NavigationPart
 
     def make_part(self) -> NavigationPart:
         """The navigation filter that the parameters name."""
-        return NavigationPart(self.vehicle, self.config(NavigationConfig), self.period)
+        part = NavigationPart(self.vehicle, self.config(NavigationConfig), self.period)
+        file = self.config(CheckpointConfig).checkpoint_file
+        self._checkpoint = Checkpoint(Path(file), self.run_id) if file else None
+        estimate = self._checkpoint.read() if self._checkpoint else None
+        if estimate is not None:
+            part.remember(estimate)
+        return part
+
+    def take_tick(self, tick: Tick) -> None:
+        """One step of the filter; its estimate is kept for a start after this one."""
+        super().take_tick(tick)
+        estimate = self.part.estimate
+        if self._checkpoint is None or estimate is None or self.part.trouble() is not None:
+            return
+        try:
+            self._checkpoint.write(estimate)
+        except OSError as fault:
+            text = f"checkpoint_file {fault.filename}: {fault.strerror}"
+            self.get_logger().warning(text, throttle_duration_sec=60.0)
 
 
 def main(args=None) -> int:

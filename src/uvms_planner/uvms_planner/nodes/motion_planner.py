@@ -14,6 +14,7 @@ from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
 from uvms_core.signals import NANOSECONDS
 from uvms_core.tick_gate import Tick
+from uvms_core.timeline import Jump
 from uvms_core.topics import Action
 from uvms_planner import PlannerConfig, PlannerStep
 from uvms_planner.part import PlannerPart
@@ -87,6 +88,11 @@ class MotionPlannerNode(PartNode):
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
         self.part.planner.cancel()
         return CancelResponse.ACCEPT
+
+    def begin_anew(self, jump: Jump) -> None:
+        """Time has jumped: a goal in progress is aborted with that reason."""
+        super().begin_anew(jump)
+        self._stamp = jump.after
 
     async def _execute(self, handle: ServerGoalHandle) -> Any:
         finished = await self._outcome

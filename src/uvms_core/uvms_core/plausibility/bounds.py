@@ -1,0 +1,257 @@
+"""The bounds of every signal that a node reads or writes, derived from the vehicle file.
+
+They are wide: nothing that a vehicle can do is refused, be it capsizing, falling with ten times its
+mass, drifting in a strong current or limp. What is refused cannot be a measurement or a command of
+this vehicle at all. Covariances of samples have none: no part of the system reads them.
+"""
+
+from collections.abc import Callable
+from typing import Any, get_type_hints
+
+import numpy as np
+
+from uvms_core import signals
+from uvms_core.plausibility.rule import Bound, Rule, within
+from uvms_core.plausibility.scale import Scale, scale_of
+from uvms_core.signals import Array
+from uvms_core.topic import Topic
+from uvms_core.vehicle import Vehicle, joint_limits
+
+MAP_M = 1e6
+"""Half of a flat map's size: beyond a thousand kilometres north-east-down means nothing."""
+DEEPEST_M = 12_000.0
+"""Deeper than the sea is anywhere (10,935 m, Challenger Deep)."""
+ABOVE_M = 5.0
+"""How far a pressure sensor gets out of the water, in metres of it: thrown up by waves. An estimate
+of the depth may be above the surface by as much as it is uncertain, so it is not held to this."""
+ANGLE_RAD = np.pi
+"""A joint is this far beyond its limits only if its encoder is wrong: end stops are soft."""
+COUNTLESS_RAD = 200 * np.pi
+"""Angle of a joint without end stops: a hundred turns."""
+SPECIFIC_FORCE = 20.0
+"""Range of an inertial unit, in multiples of gravity: beyond what units of this class measure."""
+ASKED = 1000.0
+"""A law may ask for this many times what the actuators have, and saturates: a large error times a
+large gain. More is no number of a law."""
+MEASURED = 20.0
+"""A joint's measured effort against its drive's limit: impacts and friction come on top."""
+UNEXPLAINED = 1000.0
+"""A disturbance against the weight and all thrust: what an observer makes of an impact."""
+ACCELERATION = 1000.0
+"""A planned acceleration, m/s^2 or rad/s^2: none of these vehicles has a hundredth of it."""
+UNIT = 10.0
+"""Of a quaternion, whose length `uvms_core.checks` holds to 1; wide, so that the quick test of the
+whole signal is left to the other values."""
+VARIANCE = 1e12
+"""A std of a million of whatever unit: what filters write for `not known` is below it."""
+SIGMAS = 6.0
+"""An estimate may be corrected by this many std of its own uncertainty within a sample."""
+ESTIMATE_M = 0.5
+"""And by this without any."""
+UNSEEN_M_S = 2.0
+"""And by this speed beside its own: the vehicle accelerates, and estimates of a speed are wrong."""
+NOISES = 10.0
+"""Noise of a sample in std: none in a billion is beyond it, with room for what a file omits."""
+ANYTHING = 1e12
+"""Bound of what nothing is known about: values of another package's sensor."""
+
+
+def bounds_of(vehicle: Vehicle, topic: Topic) -> Rule:
+    """The rule of a topic; one of finite numbers alone where its signal is not ours."""
+    make = _RULES.get(topic.signal) if topic.signal is not None else None
+    if topic.name in _BY_TOPIC:
+        make = _BY_TOPIC[topic.name]
+    return _of_anything(topic.signal) if make is None else make(vehicle, scale_of(vehicle))
+
+
+def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
+    imu = vehicle.sensors.imu
+    noise = NOISES * np.radians(max(imu.roll_pitch_noise_deg, imu.heading_noise_deg))
+    force = SPECIFIC_FORCE * vehicle.environment.gravity_m_s2
+    return Rule(
+        (
+            _quaternion("quaternion", scale, noise),
+            within("angular_velocity", scale.rate, 3, "rad/s"),
+            within("linear_acceleration", force, 3, "m/s^2"),
+        ),
+        quaternion="quaternion",
+    )
+
+
+def _dvl(vehicle: Vehicle, scale: Scale) -> Rule:
+    """The transducer moves with the hull: its lever times the rate comes on top."""
+    speed = scale.speed + scale.rate * float(np.linalg.norm(vehicle.sensors.dvl.position_m))
+    return Rule((within("velocity", speed, 3, "m/s"),))
+
+
+def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
+    sea, sensor = vehicle.environment, vehicle.sensors.pressure
+    metre = sea.water_density_kg_m3 * sea.gravity_m_s2
+    noise = NOISES * (sensor.noise_pa + sensor.bias_pa)
+    speed = scale.speed + scale.rate * float(np.linalg.norm(sensor.position_m))
+    low = sea.atmospheric_pressure_pa - ABOVE_M * metre - noise
+    high = sea.atmospheric_pressure_pa + DEEPEST_M * metre + noise
+    jump = NOISES * sensor.noise_pa + 0.1 * metre
+    return Rule((Bound("pressure", low, high, 1, "Pa", rate=metre * speed, slack=jump),))
+
+
+def _gps(vehicle: Vehicle, scale: Scale) -> Rule:
+    return Rule(
+        (
+            Bound("latitude_deg", -90.0, 90.0, 0, "deg", only_if="fix"),
+            Bound("longitude_deg", -360.0, 360.0, 0, "deg", only_if="fix"),
+            Bound("altitude", -DEEPEST_M, DEEPEST_M, 0, "m", only_if="fix"),
+        )
+    )
+
+
+def _joints(vehicle: Vehicle, scale: Scale) -> Rule:
+    n, encoders = vehicle.n_joints, vehicle.sensors.encoders
+    noise = np.radians(NOISES * encoders.noise_deg + 2.0 * encoders.resolution_deg)
+    rate_noise = np.radians(NOISES * encoders.rate_noise_deg_s)
+    low, high = _angles(vehicle)
+    rate = scale.joint_rate + rate_noise
+    return Rule(
+        (
+            Bound("position", low - noise, high + noise, n, "rad", rate=rate, slack=noise + 0.05),
+            within("velocity", rate, n, "rad/s"),
+            within("effort", MEASURED * scale.effort, n, "N m"),
+        )
+    )
+
+
+def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
+    place = np.array([MAP_M, MAP_M, DEEPEST_M])
+    rates = np.array([scale.speed] * 3 + [scale.rate] * 3)
+    return Rule(
+        (
+            within("position", place, 3, "m", rate=UNSEEN_M_S, slack=ESTIMATE_M),
+            _quaternion("quaternion", scale, 0.0),
+            within("nu", rates, 6, "m/s or rad/s"),
+            _covariance("pose_covariance", 6),
+            _covariance("twist_covariance", 6),
+        ),
+        quaternion="quaternion",
+        extra_slack=_own_motion,
+    )
+
+
+def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
+    """By how much the next estimate may differ (85,): its own speed, and its own uncertainty."""
+    slack = np.zeros(3 + 4 + 6 + 36 + 36)
+    std = np.sqrt(np.maximum(odometry.pose_covariance.diagonal(), 0.0))
+    speed = float(np.linalg.norm(odometry.nu[:3]))
+    slack[:3] = SIGMAS * std[:3] + speed * elapsed_s
+    slack[3:7] = SIGMAS * 0.5 * float(np.max(std[3:]))
+    return slack
+
+
+def _command(vehicle: Vehicle, scale: Scale) -> Rule:
+    return Rule((within("wrench", _wrench(ASKED * scale.force, scale), 6, "N or N m"),))
+
+
+def _achieved(vehicle: Vehicle, scale: Scale) -> Rule:
+    return Rule((within("wrench", _wrench(2.0 * scale.force, scale), 6, "N or N m"),))
+
+
+def _disturbance(vehicle: Vehicle, scale: Scale) -> Rule:
+    return Rule((within("wrench", _load(scale), 6, "N or N m"),))
+
+
+def _budget(vehicle: Vehicle, scale: Scale) -> Rule:
+    parts = ("restoring", "coupling", "external")
+    return Rule(tuple(within(name, _load(scale), 6, "N or N m") for name in parts))
+
+
+def _joint_command(vehicle: Vehicle, scale: Scale) -> Rule:
+    return Rule((within("effort", ASKED * scale.effort, vehicle.n_joints, "N m"),))
+
+
+def _thruster_command(vehicle: Vehicle, scale: Scale) -> Rule:
+    return Rule((within("thrust", ASKED * scale.force, vehicle.n_thrusters, "N"),))
+
+
+def _allocation(vehicle: Vehicle, scale: Scale) -> Rule:
+    asked = _wrench((ASKED + 2.0) * scale.force, scale)
+    return Rule(
+        (
+            within("thrust", ASKED * scale.force, vehicle.n_thrusters, "N"),
+            within("achieved", asked, 6, "N or N m"),
+            within("residual", asked, 6, "N or N m"),
+        )
+    )
+
+
+def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
+    low, high = _angles(vehicle)
+    place = np.array([MAP_M, MAP_M, DEEPEST_M])
+    rates = np.array([scale.speed] * 3 + [scale.rate] * 3)
+    return Rule(
+        (
+            within("position", place, 0, "m"),
+            within("nu", rates, 0, "m/s or rad/s"),
+            within("nu_dot", ACCELERATION, 0, "m/s^2 or rad/s^2"),
+            Bound("q", low, high, 0, "rad"),
+            within("q_dot", scale.joint_rate, 0, "rad/s"),
+            within("q_ddot", ACCELERATION, 0, "rad/s^2"),
+            within("end_effector", place + scale.size, 0, "m"),
+            Bound("times", 0.0, MAP_M, 0, "s"),
+        )
+    )
+
+
+def _of_anything(signal: type | None) -> Rule:
+    """Finite numbers of any size that is not absurd, in every array and number of a signal."""
+    hints = get_type_hints(signal) if signal is not None else {}
+    fields = [name for name, hint in hints.items() if hint is float or "ndarray" in str(hint)]
+    return Rule(tuple(within(name, ANYTHING, 0, "") for name in fields if name not in _NOT_NUMBERS))
+
+
+_NOT_NUMBERS = ("saturated",)
+
+
+def _quaternion(field: str, scale: Scale, noise: float) -> Bound:
+    """Components change by half the angle; the slack is for the estimate's corrections."""
+    return within(field, UNIT, 4, "", rate=0.5 * scale.rate, slack=0.1 + noise)
+
+
+def _covariance(field: str, size: int) -> Bound:
+    return within(field, VARIANCE, size * size, "", is_matrix=True)
+
+
+def _angles(vehicle: Vehicle) -> tuple[Array, Array]:
+    low, high = joint_limits(vehicle)
+    free = np.array([joint.stop_stiffness_nm_rad == 0.0 for joint in vehicle.arm.joints])
+    margin = np.where(free, COUNTLESS_RAD, ANGLE_RAD)
+    return low - margin, high + margin
+
+
+def _wrench(force: float, scale: Scale) -> Array:
+    """A force along each axis, and its moment at the vehicle's size."""
+    return force * np.array([1.0] * 3 + [scale.size] * 3)
+
+
+def _load(scale: Scale) -> Array:
+    return _wrench(UNEXPLAINED * (scale.force + scale.weight), scale)
+
+
+_Maker = Callable[[Vehicle, Scale], Rule]
+_RULES: dict[Any, _Maker] = {
+    signals.ImuSample: _imu,
+    signals.DvlSample: _dvl,
+    signals.PressureSample: _pressure,
+    signals.GpsSample: _gps,
+    signals.JointStates: _joints,
+    signals.Odometry: _odometry,
+    signals.DisturbanceBudget: _budget,
+    signals.JointCommand: _joint_command,
+    signals.ThrusterCommand: _thruster_command,
+    signals.Allocation: _allocation,
+    signals.Reference: _reference,
+}
+_BY_TOPIC: dict[str, _Maker] = {
+    "wrench_command": _command,
+    "wrench_achieved": _achieved,
+    "disturbance": _disturbance,
+}
+"""Topics whose signals are of one class but of different size."""

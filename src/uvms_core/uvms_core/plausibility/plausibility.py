@@ -1,0 +1,62 @@
+"""All topics of a vehicle against their bounds: what comes in with jumps, what goes out without."""
+
+from typing import Any
+
+from uvms_core import checks
+from uvms_core.errors import ImplausibleError, SignalError
+from uvms_core.plausibility.bounds import bounds_of
+from uvms_core.plausibility.rule import Rule
+from uvms_core.plausibility.watch import Watch
+from uvms_core.topic import Topic
+from uvms_core.vehicle import Vehicle
+
+
+class Plausibility:
+    """Bounds of a vehicle, and the last samples of every topic that comes in."""
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        self._vehicle = vehicle
+        self._rules: dict[str, Rule] = {}
+        self._watches: dict[str, Watch] = {}
+
+    def reset(self) -> None:
+        """Forget all samples: time or place begins anew."""
+        for watch in self._watches.values():
+            watch.reset()
+
+    def admit(self, topic: Topic, signal: Any) -> str | None:
+        """Take a sample that comes in.
+
+        Returns:
+            What happened, in words, where a jump is taken for real; None as a rule.
+
+        Raises:
+            ImplausibleError: a value, or its jump from the last sample, is not possible.
+        """
+        watch = self._watches.get(topic.name)
+        if watch is None:
+            watch = self._watches[topic.name] = Watch(self._rule(topic))
+        fault = watch.fault(signal.stamp, signal)
+        if fault is not None:
+            raise ImplausibleError(f"{topic.name}: {fault}")
+        if watch.news is None:
+            return None
+        news, watch.news = watch.news, None
+        return f"{topic.name}: {news}"
+
+    def fault(self, topic: Topic, signal: Any) -> str | None:
+        """Why a signal must not go out, in words; None where it may, which marks it as checked."""
+        rule = self._rules.get(topic.name) or self._rule(topic)
+        try:
+            checks.check(topic.name, signal)
+        except SignalError as fault:
+            return str(fault)
+        if rule.is_flat and rule.is_possible(rule.flat(signal)):
+            return None
+        fault = rule.explain(signal)
+        return fault and f"{topic.name}: {fault}"
+
+    def _rule(self, topic: Topic) -> Rule:
+        if topic.name not in self._rules:
+            self._rules[topic.name] = bounds_of(self._vehicle, topic)
+        return self._rules[topic.name]
