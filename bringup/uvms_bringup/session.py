@@ -19,7 +19,6 @@ from uvms_analysis.summary import summarise
 from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Claim, Holder
 from uvms_bringup.ending import Ending
-from uvms_bringup.errors import RunError
 from uvms_bringup.folder import claim_folder
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
@@ -34,6 +33,7 @@ from uvms_core.yaml_text import dump_yaml
 
 Goal = PathGoal | JointGoal | None
 VEHICLE_FILE = "vehicle.yaml"
+BAG_FILE = "metadata.yaml"
 SUMMARY_FILE = "summary.json"
 Progress = Callable[[int, str], None]
 Run = Callable[[LogWriter, Ending, Progress], None]
@@ -141,7 +141,7 @@ class Session:
                 try:
                     self._describe(log, config)
                     run(log, ending, progress)
-                except (UvmsError, OSError) as reason:
+                except UvmsError as reason:
                     fault = reason
                 finally:
                     line.end()
@@ -152,19 +152,17 @@ class Session:
             self.claim.release()
 
     def _end(self, log: LogWriter, ending: Ending, fault: Exception | None) -> None:
-        """The last record; a log that cannot be written any more goes without."""
+        """The last record; LogError where the log cannot be written any more."""
         stopped_by = fault.name if isinstance(fault, Stopped) else str(fault or "")
         end = ending.record(self.scenario.duration_s, stopped_by)
-        try:
-            log.metadata(run_end.NAME, end.to_metadata())
-            log.close()
-        except OSError as full:
-            raise RunError(f"{log.path}: cannot be written: {full.strerror}") from full
+        log.metadata(run_end.NAME, end.to_metadata())
+        log.close()
 
     def _conclude(self, log: Path, clock: Stopwatch, fault: Exception | None) -> dict[str, Any]:
         """The summary; a run that never began leaves no log."""
         if fault is not None and clock.run_s == 0.0:
-            log.unlink()
+            for file in (log, log.parent / BAG_FILE):
+                file.unlink(missing_ok=True)
             raise fault
         summary = self._summarise(clock)
         if isinstance(fault, Stopped):

@@ -1,5 +1,6 @@
 """A log is complete, or says that it is not."""
 
+import os
 import signal
 import time
 from collections import Counter
@@ -21,35 +22,39 @@ def messages(run: LiveRun) -> Counter:
 
 
 def halt(run: LiveRun, seconds: float) -> None:
-    run.signal(signal.SIGSTOP)
+    os.kill(run.process.pid, signal.SIGSTOP)
     time.sleep(seconds)
-    run.signal(signal.SIGCONT)
+    os.kill(run.process.pid, signal.SIGCONT)
 
 
 def test_the_plant_waits_for_a_recorder_that_lags_behind(tmp_path, saw):
-    with running(tmp_path / "a", *GRAPH, "60") as run:
+    with running(tmp_path / "a", *GRAPH, "30") as run:
         run.await_ticks(100_000)
         halt(run, SHORT_HALT_S)
         assert run.code() == 0, run.text
     counted = messages(run)
-    assert counted["/sensors/imu"] == 6001
-    assert counted["/tf"] == counted["/clock"] == counted["/allocation"] == 1201
+    assert counted["/sensors/imu"] == 3001
+    assert counted["/tf"] == counted["/clock"] == counted["/allocation"] == 601
     assert run.end.lost == {}
-    sent = {name: number for name, number in run.end.sent.items() if name != "/diagnostics"}
-    assert sent.items() <= counted.items()
-    saw("recorder halted in lockstep", "the plant waits; 6,001 of 6,001 IMU messages, none lost")
+    assert run.end.sent.items() <= counted.items()
+    saw("recorder halted in lockstep", "the plant waits; 3,001 of 3,001 IMU messages, none lost")
 
 
 def test_messages_lost_in_real_time_are_counted_by_topic(tmp_path, saw):
-    with running(tmp_path / "a", *GRAPH, "240", "--pace", "realtime:20") as run:
+    with running(tmp_path / "a", *GRAPH, "60", "--pace", "realtime:10") as run:
         run.await_ticks(100_000)
         halt(run, SHORT_HALT_S)
-        run.code()
+        assert run.code() == 3, run.text
     counted, end = messages(run), run.end
-    assert end.lost["/sensors/imu"] > 1000
-    assert end.sent["/sensors/imu"] == counted["/sensors/imu"] + end.lost["/sensors/imu"]
+    for name, lost in end.lost.items():
+        assert end.sent[name] == counted[name] + lost
+    assert end.lost or "the plant" in end.stopped_by  # it may be cut off, and then cannot count
     assert run.summary["completed"] is False
-    saw("recorder halted in real time", "the lost messages are counted; invalid")
+    assert any("messages" in reason for reason in run.summary["reasons"])
+    stamps = [stamp for name, stamp, _ in run.log.raw() if name == "/rosout"]
+    assert stamps  # nodes complained
+    assert max(stamps) <= 60_000_000_000  # simulation time
+    saw("recorder halted in real time", "the lost messages are counted; invalid, exit 3")
 
 
 @pytest.mark.long
@@ -61,25 +66,6 @@ def test_a_recorder_that_the_graph_has_forgotten_says_what_is_missing(tmp_path, 
     assert any("never came" in text for text in run.end.incidents)
     assert run.end.lost
     saw("recorder halted for 25 s in lockstep", "goes on, says what never came; invalid")
-
-
-def test_rosout_is_recorded_with_simulation_time(tmp_path):
-    with running(tmp_path / "a", *GRAPH, "8", "--pace", "realtime:2") as run:
-        process = run.await_node("thrust_allocator")
-        run.await_ticks(40_000)
-        _halt_process(process, 1.5)
-        run.code()
-    stamps = [stamp for name, stamp, _ in run.log.raw() if name == "/rosout"]
-    assert stamps
-    assert max(stamps) <= 8_000_000_000
-
-
-def _halt_process(process: int, seconds: float) -> None:
-    import os
-
-    os.kill(process, signal.SIGSTOP)
-    time.sleep(seconds)
-    os.kill(process, signal.SIGCONT)
 
 
 @pytest.mark.parametrize("rate", [100.0, 1000.0, 5000.0])

@@ -83,23 +83,23 @@ class Losses:
         """Whose count is missing at the end."""
         return [] if self._last is None else self._last.silent()
 
-    def sent(self) -> dict[str, int]:
-        """Messages that the nodes sent during the run, by full name of the topic."""
-        return {self._full(name): number for name, number in sorted(self._sent().items())}
-
     def lost(self) -> dict[str, int]:
-        """Of these, the ones that were never received."""
+        """Messages that were sent during the run and never received, by full name of the topic."""
         return {self._full(name): number for name, number in sorted(self._missing().items())}
 
-    def _sent(self) -> Counter[str]:
-        if self._first is None or self._last is None:
-            return Counter()
-        return self._last.total() - self._first.total()
+    def sent(self) -> dict[str, int]:
+        """Messages of the topics that were counted: received ones and lost ones, by full name."""
+        counted = {} if self._last is None else self._last.total()
+        missing = self._missing()
+        return {self._full(name): self._received[name] + missing[name] for name in sorted(counted)}
 
     def _missing(self) -> Counter[str]:
+        if self._first is None or self._last is None:
+            return Counter()
         # The difference of counters keeps what is above zero alone: a node that was started again
         # counts from zero, and what it sent before is received, but not in its count.
-        return self._sent() - (Counter(self._received) - self._before)
+        sent = self._last.total() - self._first.total()
+        return sent - (Counter(self._received) - self._before)
 
     def _full(self, name: str) -> str:
         return Topic(name, "").resolve(self._namespace)

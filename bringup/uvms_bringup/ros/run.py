@@ -18,6 +18,7 @@ from uvms_bringup.ros.conductor import Conductor
 from uvms_bringup.ros.domain import claim_domain
 from uvms_bringup.ros.parameter_file import node_parameters
 from uvms_bringup.ros.processes import environment
+from uvms_bringup.ros.pulse import Pulse
 from uvms_bringup.ros.recorder import Write
 from uvms_bringup.scenario import Scenario
 from uvms_bringup.stopped import Stopped
@@ -104,7 +105,7 @@ class GraphRun:
             self.write,
             lambda: self._watch(company, conductor),
             self.vehicle.joint_names,
-            topics.of(self.vehicle),
+            (*topics.of(self.vehicle), topics.ROSOUT),
             topics.nodes(self.vehicle),
             foreign,
             self.cast.absent,
@@ -145,10 +146,12 @@ class GraphRun:
             conductor.acknowledge(self._period, self._window)
         spinner.add(company.enter())
         conductor.conduct(spinner, self.goal)
+        pulse = Pulse(conductor, conductor.recorder)
         end = to_nanoseconds(self.scenario.duration_s)
 
         def look() -> bool:
             self._watch(company, conductor)
+            pulse.check()
             self.progress(conductor.stamp, conductor.progress())
             return conductor.arrived(end)
 
