@@ -90,6 +90,7 @@ class PlantNode(UvmsNode):
         self._sensor_topics = in_order_of_publication(self.vehicle)
         self._notice = time.monotonic() + NOTICE
         self._rivals = Publishers(self, {topic.name: 1 for topic in self.graph[self.role].outputs})
+        self._rivals.know()
         self._look = time.monotonic() + LOOK
         self._recorded = 0
         self._held = False
