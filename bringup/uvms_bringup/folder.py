@@ -16,19 +16,20 @@ def claim_folder(folder: Path, holder: Holder) -> tuple[Path, Claim]:
     Raises:
         RunError: it cannot be made, another run has it, or it holds a run already.
     """
+    given = folder
     try:
-        folder = folder.resolve()
+        folder = given.resolve()
         folder.mkdir(parents=True, exist_ok=True)
         claim = Claim(folder / CLAIM_FILE, holder)
     except TakenError as other:
         raise RunError(
-            f"--output {folder}: belongs to {other}, which is still running; give another --output"
+            f"--output {given}: belongs to {other}, which is still running; give another --output"
         ) from other
     except OSError as fault:
-        raise RunError(f"--output {folder}: {_why(fault)}") from fault
+        raise RunError(f"--output {given}: {_why(fault)}") from fault
     if (folder / LOG_FILE).exists():
         claim.release()
-        raise RunError(f"{folder} holds a run already; give another --output, or remove it")
+        raise RunError(f"{given} holds a run already; give another --output, or remove it")
     if claim.left_by is not None:
         print(f"note: {folder} was left without a log by {claim.left_by}", file=sys.stderr)
     return folder, claim
