@@ -30,6 +30,7 @@ from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
 from uvms_core.yaml_text import dump_yaml
+from uvms_planner.errors import GoalRejected
 
 Goal = PathGoal | JointGoal | None
 VEHICLE_FILE = "vehicle.yaml"
@@ -160,7 +161,8 @@ class Session:
 
     def _conclude(self, log: Path, clock: Stopwatch, fault: Exception | None) -> dict[str, Any]:
         """The summary; a run that never began leaves no log."""
-        if fault is not None and clock.run_s == 0.0:
+        began = clock.run_s > 0.0 and not isinstance(fault, GoalRejected)
+        if fault is not None and not began:
             for file in (log, log.parent / BAG_FILE):
                 file.unlink(missing_ok=True)
             raise fault
