@@ -35,7 +35,7 @@ def check_stopped(run: LiveRun, number: int) -> None:
     [
         ("simulate", signal.SIGINT),
         ("simulate", signal.SIGTERM),
-        ("composed", signal.SIGINT),
+        pytest.param("composed", signal.SIGINT, marks=pytest.mark.long),
         ("separate", signal.SIGTERM),
     ],
 )
@@ -48,7 +48,7 @@ def test_a_signal_during_a_run(tmp_path, saw, kind, number):
     saw(f"{name} during a run ({kind})", f"exit {CODES[number]}, log closed, aborted")
 
 
-@pytest.mark.parametrize("delay_s", [0.3, 2.0])
+@pytest.mark.parametrize("delay_s", [pytest.param(0.3, marks=pytest.mark.long), 2.0])
 def test_a_signal_while_a_run_starts(tmp_path, saw, delay_s):
     with running(tmp_path / "a", *RUNS["separate"]) as run:
         time.sleep(delay_s)

@@ -82,7 +82,7 @@ def run_cell(folder, role, name, pace, pause_s) -> LiveRun:
     ("role", "name", "pace"),
     [
         (topics.THRUST_ALLOCATOR, "SIGKILL", "realtime"),
-        (topics.NAVIGATION, "SIGSTOP", "lockstep"),
+        pytest.param(topics.NAVIGATION, "SIGSTOP", "lockstep", marks=pytest.mark.long),
     ],
 )
 def test_some_cells(tmp_path, saw, role, name, pace):

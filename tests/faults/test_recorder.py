@@ -40,6 +40,7 @@ def test_the_plant_waits_for_a_recorder_that_lags_behind(tmp_path, saw):
     saw("recorder halted in lockstep", "the plant waits; 3,001 of 3,001 IMU messages, none lost")
 
 
+@pytest.mark.long
 def test_messages_lost_in_real_time_are_counted_by_topic(tmp_path, saw):
     with running(tmp_path / "a", *GRAPH, "60", "--pace", "realtime:10") as run:
         run.await_ticks(100_000)

@@ -23,6 +23,7 @@ def test_a_second_run_on_a_domain_is_refused_and_names_the_first(tmp_path, saw):
     saw("a second run on a ROS domain", "refused with exit 2 before it starts, names the first")
 
 
+@pytest.mark.long
 def test_two_runs_that_start_at_once_without_a_domain_find_one_each(tmp_path, saw):
     with running(tmp_path / "a", *HOVER, "5", "--seed", "1", **no_domain()) as first:
         with running(tmp_path / "b", *HOVER, "5", "--seed", "2", **no_domain()) as second:
@@ -60,7 +61,9 @@ time.sleep(60.0)
 """
 
 
-@pytest.mark.parametrize("topic", ["/clock", "thruster_command"])
+@pytest.mark.parametrize(
+    "topic", ["/clock", pytest.param("thruster_command", marks=pytest.mark.long)]
+)
 def test_a_foreign_publisher_ends_a_run_that_is_then_invalid(tmp_path, saw, topic):
     domain = one_domain()
     with running(tmp_path / "a", *HOVER, "6000", **domain) as run:
@@ -96,6 +99,7 @@ def test_kill_9_of_the_parent_leaves_no_orphan_and_the_domain_free(tmp_path, saw
     saw("kill -9 of the parent", "its six nodes end with it; the next run on the domain starts")
 
 
+@pytest.mark.long
 def test_kill_9_of_the_parent_while_its_nodes_start_leaves_no_orphan(tmp_path, saw):
     with running(tmp_path / "a", "run", "hover", "--duration", "600") as run:
         run.await_node("plant")
