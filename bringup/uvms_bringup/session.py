@@ -1,6 +1,7 @@
 """One run from its scenario to its folder: run.mcap, config.yaml, summary.json."""
 
 import json
+import os
 import subprocess
 import time
 from collections.abc import Callable
@@ -13,23 +14,30 @@ from typing import Any
 from uvms_analysis.log import run_end
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
-from uvms_analysis.log.run_end import RunEnd
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.summary import summarise
 from uvms_bringup.cast import Cast
-from uvms_bringup.errors import RunError
+from uvms_bringup.claim import Claim, Holder
+from uvms_bringup.ending import Ending
+from uvms_bringup.folder import claim_folder
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
+from uvms_bringup.run_id import new_run_id
 from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
+from uvms_bringup.stopped import SignalWatch, Stopped
 from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
 from uvms_core.yaml_text import dump_yaml
+from uvms_planner.errors import GoalRejected
 
 Goal = PathGoal | JointGoal | None
 VEHICLE_FILE = "vehicle.yaml"
-Run = Callable[[LogWriter, Callable[[int, str], None]], bool]
+BAG_FILE = "metadata.yaml"
+SUMMARY_FILE = "summary.json"
+Progress = Callable[[int, str], None]
+Run = Callable[[LogWriter, Ending, Progress], None]
 
 
 class Stopwatch:
@@ -70,34 +78,49 @@ class Session:
     folder: Path
     pace: str
     command: str
+    holder: Holder
+    claim: Claim
     cast: Cast = field(default_factory=Cast)
 
     def run_simulation(self) -> dict[str, Any]:
-        """`uvms simulate`: returns the summary."""
+        """`uvms simulate`: returns the summary; as `run_graph`."""
 
-        def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
+        def run(log: LogWriter, ending: Ending, progress: Progress) -> None:
             names = self.vehicle.joint_names, self.vehicle.thruster_names
             writer = SignalWriter(log, *names, self.cast.namespace)
-            return simulate(self.scenario, self.vehicle, self.goal, writer, progress)
+            began = self.goal is not None
+            ending.goal = "running" if began else "none"
+            succeeded = simulate(self.scenario, self.vehicle, self.goal, writer, progress)
+            if began:
+                ending.goal = "succeeded" if succeeded else "aborted"
+            ending.sent = log.counts  # what is computed here is written here
 
         return self._record(run)
 
-    def run_graph(self, pace: Pace, composed: bool) -> dict[str, Any]:
-        """`uvms run`: returns the summary."""
-        from uvms_bringup.ros.run import run_graph  # only this needs ROS
+    def run_graph(self, pace: Pace, composed: bool, respawn: bool = False) -> dict[str, Any]:
+        """`uvms run`: returns the summary.
 
-        def run(log: LogWriter, progress: Callable[[int, str], None]) -> bool:
-            return run_graph(
+        Raises:
+            Stopped: a signal ended the run; what was recorded is in its folder.
+            UvmsError: the run never began.
+        """
+        from uvms_bringup.ros.run import GraphRun  # only this needs ROS
+
+        def run(log: LogWriter, ending: Ending, progress: Progress) -> None:
+            GraphRun(
                 self.scenario,
                 self.vehicle,
                 self.goal,
                 pace,
                 self.cast,
                 composed,
+                respawn,
                 self.folder,
+                self.holder,
                 log.write,
                 progress,
-            )
+                ending,
+            ).run()
 
         return self._record(run)
 
@@ -106,40 +129,47 @@ class Session:
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
         line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
-        clock = Stopwatch()
+        clock, ending, fault = Stopwatch(), Ending(), None
+        try:
+            with SignalWatch() as signals, LogWriter(self.folder / "run.mcap") as log:
 
-        def progress(stamp: int, note: str) -> None:
-            clock.start()
-            line.show(stamp, note)
+                def progress(stamp: int, note: str) -> None:
+                    clock.start()
+                    signals.begin()
+                    signals.check()
+                    line.show(stamp, note)
 
-        with LogWriter(self.folder / "run.mcap") as log:
-            self._describe(log, config)
-            try:
-                succeeded = run(log, progress)
-                self._end(log, goal=_goal_word(self.goal, succeeded))
-            except UvmsError as fault:
-                self._give_up(log, clock, fault)
-                raise
-            finally:
-                line.end()
-        clock.stop()
-        return self._summarise(clock)
+                try:
+                    self._describe(log, config)
+                    run(log, ending, progress)
+                except UvmsError as reason:
+                    fault = reason
+                finally:
+                    line.end()
+                    clock.stop()
+                self._end(log, ending, fault)
+            return self._conclude(log.path, clock, fault)
+        finally:
+            self.claim.release()
 
-    def _end(self, log: LogWriter, goal: str, stopped_by: str = "") -> None:
-        asked = self.scenario.duration_s
-        record = RunEnd(asked, stopped_by, goal, sent=log.counts)
-        log.metadata(run_end.NAME, record.to_metadata())
-
-    def _give_up(self, log: LogWriter, clock: Stopwatch, fault: UvmsError) -> None:
-        """Keep what was recorded, with the reason; a run that never began leaves no log."""
-        log.metadata("fault", {"message": fault})
-        self._end(log, "running", str(fault))
+    def _end(self, log: LogWriter, ending: Ending, fault: Exception | None) -> None:
+        """The last record; LogError where the log cannot be written any more."""
+        stopped_by = fault.name if isinstance(fault, Stopped) else str(fault or "")
+        end = ending.record(self.scenario.duration_s, stopped_by)
+        log.metadata(run_end.NAME, end.to_metadata())
         log.close()
-        clock.stop()
-        if clock.run_s > 0.0:
-            self._summarise(clock)
-        else:
-            log.path.unlink()
+
+    def _conclude(self, log: Path, clock: Stopwatch, fault: Exception | None) -> dict[str, Any]:
+        """The summary; a run that never began leaves no log."""
+        began = clock.run_s > 0.0 and not isinstance(fault, GoalRejected)
+        if fault is not None and not began:
+            for file in (log, log.parent / BAG_FILE):
+                file.unlink(missing_ok=True)
+            raise fault
+        summary = self._summarise(clock)
+        if isinstance(fault, Stopped):
+            raise fault
+        return summary
 
     def _describe(self, log: LogWriter, config: str) -> None:
         log.attach("config.yaml", config, "application/yaml")
@@ -155,43 +185,34 @@ class Session:
                 "version": version("uvms_bringup"),
                 "pace": self.pace,
                 "command": self.command,
+                "run_id": self.holder.run_id,
             },
         )
 
     def _summarise(self, clock: Stopwatch) -> dict[str, Any]:
-        log = self.folder / "run.mcap"
-        summary = summarise(log, wall_s=clock.run_s)
+        summary: dict[str, Any] = {"run_id": self.holder.run_id}
+        summary |= summarise(self.folder / "run.mcap", wall_s=clock.run_s)
         summary["start_up_s"] = clock.start_up_s
         text = json.dumps(summary, indent=2)
-        (self.folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+        (self.folder / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
         return summary
-
-
-def _goal_word(goal: Goal, succeeded: bool) -> str:
-    if goal is None:
-        return "none"
-    return "succeeded" if succeeded else "aborted"
 
 
 def prepare(
     scenario: Scenario, output: str | None, pace: str, command: str, cast: Cast | None = None
 ) -> Session:
-    """Load the vehicle, make the goal and the run's folder.
+    """Load the vehicle, make the goal, and make and claim the run's folder.
 
     Raises:
-        RunError: the folder cannot be made, or it holds another run already.
+        RunError: the folder cannot be made, or it belongs to another run.
     """
     vehicle = scenario.load_vehicle()
     scenario = scenario.for_vehicle(vehicle)
     goal = scenario.goal.build(vehicle, scenario.plant)
+    holder = Holder(new_run_id(), os.getpid(), command)
     folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
-    if (folder / "run.mcap").exists():
-        raise RunError(f"{folder} holds a run already; give another --output, or remove it")
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as fault:
-        raise RunError(f"--output {folder}: {fault.strerror}") from fault
-    return Session(scenario, vehicle, goal, folder.resolve(), pace, command, cast or Cast())
+    folder, claim = claim_folder(folder, holder)
+    return Session(scenario, vehicle, goal, folder, pace, command, holder, claim, cast or Cast())
 
 
 def effective_config(scenario: Scenario) -> str:

@@ -243,7 +243,7 @@ class TestPathsOfFiles:
         repeat = prepare(again, str(tmp_path / "again"), "lockstep", "test")
         np.testing.assert_array_equal(repeat.goal.positions, session.goal.positions)
         second = repeat.run_simulation()
-        timing = {"wall_s", "start_up_s", "real_time_factor", "planner_step_ms"}
+        timing = {"run_id", "wall_s", "start_up_s", "real_time_factor", "planner_step_ms"}
         for key in first.keys() - timing:
             assert first[key] == second[key], key
 

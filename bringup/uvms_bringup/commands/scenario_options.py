@@ -3,6 +3,7 @@
 import json
 import sys
 from argparse import ArgumentParser, Namespace
+from collections.abc import Callable
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ def add_scenario_options(parser: ArgumentParser, note: str = "") -> None:
         "(vehicle.hull.mass_kg=190); may be repeated",
     )
     add("--output", metavar="DIR", help="folder of the run (default: runs/SCENARIO-TIME)")
+    add("--json", action="store_true", help="print the summary as JSON, as in summary.json")
     add("--namespace", default="", metavar="NAME", help="ROS namespace of all topics and nodes")
     roles = ", ".join(topics.NODES)
     add(
@@ -83,13 +85,32 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
     session = prepare(scenario, options.output, str(pace), options.command_line, cast)
     for line in vehicle_warnings(session.vehicle):
         print(f"warning: vehicle: {line}", file=sys.stderr)
-    print(f"{scenario.scenario}: {scenario.description}\nto {session.folder}", flush=True)
+    print(
+        f"{scenario.scenario}: {scenario.description}\nrun {session.holder.run_id} to"
+        f" {session.folder}",
+        file=sys.stderr if options.json else None,
+        flush=True,
+    )
     return session
 
 
-def print_summary(session: "Session", summary: dict[str, Any]) -> int:
-    """Print what came out and where it is; returns the exit code."""
-    print(json.dumps(summary, indent=2))
+def conclude(session: "Session", run: Callable[[], dict[str, Any]], as_json: bool) -> int:
+    """Run, print what came out and where it is; returns the exit code."""
+    from uvms_analysis.outcome import EXIT_CODES
+    from uvms_bringup.commands.summary_text import summary_text
+    from uvms_bringup.session import SUMMARY_FILE
+    from uvms_bringup.stopped import Stopped
+
+    try:
+        summary = run()
+        code = EXIT_CODES[summary["outcome"]]
+    except Stopped as stopped:
+        print(stopped, file=sys.stderr)
+        code, file = stopped.exit_code, session.folder / SUMMARY_FILE
+        if not file.exists():  # it never began
+            return code
+        summary = json.loads(file.read_text(encoding="utf-8"))
+    print(json.dumps(summary, indent=2) if as_json else summary_text(summary), flush=True)
     log = session.folder / "run.mcap"
-    print(f"log: {log}\nfigures: {sys.argv[0]} report {log}")
-    return 0 if summary["completed"] else 1
+    print(f"log: {log}\nfigures: {sys.argv[0]} report {log}", file=sys.stderr if as_json else None)
+    return code

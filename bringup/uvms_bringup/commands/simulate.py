@@ -5,8 +5,8 @@ from argparse import ArgumentParser, Namespace
 
 from uvms_bringup.commands.scenario_options import (
     add_scenario_options,
+    conclude,
     open_session,
-    print_summary,
 )
 from uvms_core.command import Command
 
@@ -17,14 +17,14 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 
 def run(options: Namespace) -> int:
-    """Run the scenario in this process; 1 if it did not complete."""
+    """Run the scenario in this process; the exit code tells the outcome."""
     from uvms_bringup.pace import Pace
 
     _refuse_nodes(options)
     lockstep = Pace()
     _note_unused(options, Pace.parse(options.pace) != lockstep)
     session = open_session(options, lockstep)
-    return print_summary(session, session.run_simulation())
+    return conclude(session, session.run_simulation, options.json)
 
 
 def _refuse_nodes(options: Namespace) -> None:

@@ -7,14 +7,19 @@ import uuid
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
+from action_msgs.msg import GoalStatus
 from rclpy.action import ActionClient
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 from unique_identifier_msgs.msg import UUID
 
 from uvms_bringup.errors import RunError
+from uvms_bringup.ros.acknowledge import Acknowledgement
+from uvms_bringup.ros.census import CONDUCTOR, DISCOVERY_S, Census
+from uvms_bringup.ros.losses import Losses
 from uvms_bringup.ros.recorder import Recorder, Write
 from uvms_bringup.ros.state_publisher import StateBroadcaster
+from uvms_bringup.stopped import Stopped
 from uvms_core import diagnostics, topics
 from uvms_core.messages import from_message, to_message
 from uvms_core.ros.convert import action_class, message_class, to_ros
@@ -30,12 +35,20 @@ START_PATIENCE_S = 180.0
 """Wall time for all nodes to come up and find each other; the first start compiles kernels."""
 ANSWER_PATIENCE_S = 60.0
 END_PATIENCE_S = 2.0
+COUNT_PATIENCE_S = 3.0
+"""Wall time at the end of a run for the nodes to count and for their last messages to arrive."""
 NOTICE_S = 10.0
 """Wall time between two lines on what is being waited for."""
 FOREIGN_SETTLE_S = 1.0
 """Wall time in which nodes that do not answer to the roll call find their listeners."""
 SETTLE_S = 0.3
 """Wall time after the last answers for messages still in flight, such as a reference."""
+
+GOAL_STATES = {
+    GoalStatus.STATUS_SUCCEEDED: "succeeded",
+    GoalStatus.STATUS_CANCELED: "canceled",
+    GoalStatus.STATUS_ABORTED: "aborted",
+}
 
 LOOP_END = (
     topics.THRUSTER_COMMAND,
@@ -55,7 +68,7 @@ class Conductor(Node):
         recorded: topics of the run, `topics.of(vehicle)`.
         graph: what each node reads and writes, `topics.nodes(vehicle)`.
         foreign: roles that are filled by nodes which do not answer to the roll call.
-        patient: wait for them without end, because a person starts them.
+        absent: of these, the ones that a person starts: they are waited for without end.
     """
 
     def __init__(
@@ -66,13 +79,14 @@ class Conductor(Node):
         recorded: Sequence[Topic] = topics.ALL,
         graph: Mapping[str, NodeTopics] = topics.NODES,
         foreign: Collection[str] = (),
-        patient: bool = False,
+        absent: Collection[str] = (),
         **options: Any,
     ) -> None:
-        super().__init__("conductor", **options)
-        self._graph, self._foreign, self._patient = graph, foreign, patient
+        super().__init__(CONDUCTOR, **options)
+        self._graph, self._foreign, self._patient = graph, foreign, bool(absent)
+        self.census = Census(self, graph, absent)
         self._joint_names = joint_names
-        self._recorder = Recorder(self, write, recorded)
+        self.recorder = Recorder(self, write, recorded)
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}
@@ -87,28 +101,50 @@ class Conductor(Node):
             qos_profile(topics.DIAGNOSTICS.qos),
         )
         self._roll_call = RollCall(self, graph, foreign, graph=graph)
+        self.acknowledgement: Acknowledgement | None = None
+        self.losses = Losses(self, self.recorder, set(graph) - set(foreign))
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
 
     def broadcast(self, vehicle: Vehicle, lockstep: bool) -> None:
         """From now on publish /tf and robot_description from the recorded messages."""
         states = StateBroadcaster(self, vehicle, lockstep)
-        self._recorder.receivers.update(states.receivers)
+        self.recorder.receivers.update(states.receivers)
         self._end = (*LOOP_END, topics.TF)
+
+    def acknowledge(self, period: int, window: int) -> None:
+        """From now on tell the plant what is recorded, as `Acknowledgement` says."""
+        further = [topic for topic in self._end if topic is topics.TF]
+        self.acknowledgement = Acknowledgement(
+            self, self.recorder, self._graph, self._foreign, further, period, window
+        )
+
+    def check_alone(self, spinner: Spinner) -> None:
+        """Look whether the graph is empty, as `Census.check_alone` says."""
+        found = time.monotonic() + DISCOVERY_S
+        while time.monotonic() < found:
+            self._watch()
+            self._check_stopped(spinner)
+            spinner.spin_once(0.05)
+        self.census.check_alone()
 
     @property
     def stamp(self) -> int:
         """Newest simulation time, ns."""
-        return self._recorder.stamp
+        return self.recorder.stamp
 
     def conduct(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
         """Bring the run to its first tick, send the goal and start time."""
-        self._recorder.on_clock = spinner.yield_turn
+        self.recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
+        self.census.check_alone_with_nodes()
+        self._await(
+            spinner, self.losses.begun, ANSWER_PATIENCE_S, lambda: "what the nodes have sent so far"
+        )
         self._call(spinner, self._start, Trigger.Request(), "plant/start")
         self._await(
             spinner,
-            lambda: topics.THRUSTER_COMMAND.name in self._recorder.newest,
+            lambda: topics.THRUSTER_COMMAND.name in self.recorder.newest,
             START_PATIENCE_S,
             lambda: f"the first thruster_command; nothing yet from {', '.join(self._silent())}",
         )
@@ -118,7 +154,7 @@ class Conductor(Node):
 
     def arrived(self, end: int) -> bool:
         """Whether the plant has reached `end` and the answers to its last tick are recorded."""
-        newest = self._recorder.newest
+        newest = self.recorder.newest
         if self.stamp < end:
             self._arrival = None
             return False
@@ -146,7 +182,7 @@ class Conductor(Node):
                 spinner.spin_once(0.05)
 
     def _silent(self) -> list[str]:
-        newest = self._recorder.newest
+        newest = self.recorder.newest
         return [
             node
             for node, own in self._graph.items()
@@ -217,11 +253,34 @@ class Conductor(Node):
                 notice += NOTICE_S
                 waited = time.monotonic() - began
                 print(f"waiting for: {lack()} ({waited:.0f} s)", file=sys.stderr, flush=True)
-            if spinner.done.done():
-                raise RunError("stopped before the run began")
+            self._check_stopped(spinner)
             if time.monotonic() > deadline:
                 raise RunError(f"timed out after {patience:.0f} s waiting for: {lack()}")
             spinner.spin_once(0.05)
+
+    @staticmethod
+    def _check_stopped(spinner: Spinner) -> None:
+        if spinner.signal:
+            raise Stopped(spinner.signal)
+        if spinner.done.done():
+            raise RunError("stopped before the run began")
+
+    def count(self, spinner: Spinner) -> list[str]:
+        """Compare what the nodes sent with what is recorded; returns who gave no count.
+
+        Time is paused first, so that nothing is on its way when they count.
+        """
+        self._pause.call_async(SetBool.Request(data=True))
+        deadline = time.monotonic() + COUNT_PATIENCE_S
+        while not self.losses.ended() and time.monotonic() < deadline:
+            spinner.serve(0.05)
+        return self.losses.silent()
+
+    def goal_state(self) -> str:
+        """What became of the goal, as `RunEnd.goal` has it."""
+        if self.goal_handle is None:
+            return "none"
+        return GOAL_STATES.get(self.result_status or 0, "running")
 
     def _take_status(self, msg: Any) -> None:
         status = from_message(topics.DIAGNOSTICS, msg)

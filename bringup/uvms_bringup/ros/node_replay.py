@@ -13,14 +13,17 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.log.compare import compare, table
 from uvms_analysis.log.read import RUN, RunLog
 from uvms_analysis.log.writer import LogWriter
+from uvms_bringup.claim import Holder
 from uvms_bringup.errors import RunError, ScenarioError
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
+from uvms_bringup.ros.domain import claim_domain
 from uvms_bringup.ros.input_player import InputPlayer
 from uvms_bringup.ros.metronome import Metronome
 from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
 from uvms_bringup.ros.processes import NodeProcesses, environment, node_command
 from uvms_bringup.ros.schedule import TickOf, TickRecord, schedule
+from uvms_bringup.run_id import new_run_id
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
 from uvms_core.config import validated
@@ -54,12 +57,15 @@ class NodeReplay:
         self.topics = topics.nodes(self._vehicle)[node]
         self.ticks = schedule(run, node, tick_of, self.topics)
         values = environment(folder / "logs")
+        command = f"uvms replay {run.path} --into {node}"
+        self._claim = claim_domain(values, Holder(new_run_id(), os.getpid(), command))
         os.environ.update(values)
         start(["uvms"])
         self._processes = NodeProcesses(folder / "logs", values)
         self._player = InputPlayer(run, node, self.topics, tick_of, log)
         self._spinner = Spinner([self._player])
         self._processes.start(node, self._command(folder))
+        self._processes.release()
 
     def _command(self, folder: Path) -> list[str]:
         vehicle = folder / "vehicle.yaml"
@@ -74,6 +80,8 @@ class NodeReplay:
         """Stop the node."""
         self._processes.stop()
         self._spinner.shutdown()
+        if self._claim is not None:
+            self._claim.release()
 
     def connect(self) -> None:
         """Wait until the node and the player are connected."""

@@ -12,13 +12,14 @@ from uvms_core.yaml_text import dump_yaml
 
 
 def node_parameters(
-    scenario: Scenario, vehicle_file: Path, pace: Pace
+    scenario: Scenario, vehicle_file: Path, pace: Pace, run_id: str = ""
 ) -> dict[str, dict[str, Any]]:
-    """ROS parameters by node."""
+    """ROS parameters by node; `run_id` is that of the run, empty outside one."""
     common = {
         "vehicle_file": str(vehicle_file),
         "seed": scenario.seed,
         "pace": pace.name,
+        "run_id": run_id,
         "control_period_s": scenario.plant.control_period_s,
     }
     own = {node: common | _own(scenario, node) for node in topics.NODES}

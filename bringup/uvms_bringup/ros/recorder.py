@@ -1,5 +1,6 @@
 """Records every topic of a run as raw CDR, stamped with simulation time."""
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from struct import unpack_from
 
@@ -14,7 +15,8 @@ from uvms_core.topics import Topic
 
 Write = Callable[[str, str, str, int, bytes], None]
 
-UNSTAMPED = {topics.TF_STATIC.name, topics.ROBOT_DESCRIPTION.name}
+UNSTAMPED = {topics.TF_STATIC.name, topics.ROBOT_DESCRIPTION.name, topics.ROSOUT.name}
+"""Without a stamp, or with one of wall time: they get the newest simulation time."""
 COUNT_SIZE = 4
 """A message that is a sequence alone, as /tf, begins with its length."""
 
@@ -35,8 +37,11 @@ class Recorder:
     def __init__(self, node: Node, write: Write, recorded: Sequence[Topic] = topics.ALL) -> None:
         self._write = write
         self.stamp = 0
+        self.set_back: tuple[int, int] | None = None  # stamps, where /clock went back
         self.on_clock: Callable[[], None] = lambda: None
-        self.newest: dict[str, int] = {}
+        self.on_message: Callable[[], None] = lambda: None
+        self.newest: dict[str, int] = {}  # stamp by topic's name
+        self.received: Counter[str] = Counter()  # messages by topic's name
         self.receivers: dict[str, Callable[[bytes], None]] = {}  # further consumers
         for topic in recorded:
             self._subscribe(node, topic)
@@ -49,16 +54,23 @@ class Recorder:
         def receive(data: bytes) -> None:
             stamp = stamp_of(data, offset) if stamped else self.stamp
             if topic is topics.CLOCK:
-                self.stamp = stamp
-                self.on_clock()
+                self._take_time(stamp)
             self.newest[topic.name] = stamp
+            self.received[topic.name] += 1
             self._write(name, topic.type, qos, stamp, data)
             if topic.name in self.receivers:
                 self.receivers[topic.name](data)
+            self.on_message()
 
         node.create_subscription(
             message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
         )
+
+    def _take_time(self, stamp: int) -> None:
+        if stamp < self.stamp:
+            self.set_back = self.set_back or (self.stamp, stamp)
+        self.stamp = stamp
+        self.on_clock()
 
 
 def stamp_of(data: bytes, offset: int = 0) -> int:

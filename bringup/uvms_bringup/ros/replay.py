@@ -78,6 +78,8 @@ class Player(Node):
         self.missing: list[str] = []
         self._publishers_of: dict[str, Publisher] = {}
         for name, type_name in run.topics.items():
+            if name == topics.ROSOUT.name:  # what its nodes said then; this node has its own
+                continue
             cls = message_type(type_name)
             if cls is None:
                 self.missing.append(f"{name} ({type_name} is not installed)")

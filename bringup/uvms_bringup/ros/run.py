@@ -1,87 +1,196 @@
 """`uvms run`: the nodes on a real ROS 2 graph, conducted and recorded from first to last tick."""
 
 import os
-import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
-import rclpy
 from rclpy.node import Node
-from rclpy.parameter import Parameter
 
 from uvms_bringup.cast import Cast
+from uvms_bringup.claim import Holder
+from uvms_bringup.ending import Ending
 from uvms_bringup.errors import RunError
 from uvms_bringup.pace import Pace
+from uvms_bringup.ros.acknowledge import window_for
+from uvms_bringup.ros.company import Company, ComposedNodes, SeparateNodes
 from uvms_bringup.ros.conductor import Conductor
-from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
-from uvms_bringup.ros.processes import NodeProcesses, environment, node_command
+from uvms_bringup.ros.domain import claim_domain
+from uvms_bringup.ros.parameter_file import node_parameters
+from uvms_bringup.ros.processes import environment
+from uvms_bringup.ros.pulse import Pulse
 from uvms_bringup.ros.recorder import Write
 from uvms_bringup.scenario import Scenario
+from uvms_bringup.stopped import Stopped
 from uvms_core import registry, topics
 from uvms_core.ros.node import UvmsNode
 from uvms_core.ros.spin import Spinner, start
-from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 
-OURS = Cast()
 Progress = Callable[[int, str], None]
-Parameters = dict[str, dict[str, Any]]
 
 
-def run_graph(
-    scenario: Scenario,
-    vehicle: Vehicle,
-    goal: PathGoal | JointGoal | None,
-    pace: Pace,
-    cast: Cast,
-    composed: bool,
-    folder: Path,
-    write: Write,
-    progress: Progress,
-) -> bool:
-    """Run a scenario on the node graph; True if it came to its end.
+class ForeignError(RunError):
+    """Somebody who does not belong to the run took part in it."""
+
+
+@dataclass(frozen=True)
+class GraphRun:
+    """A run on the graph.
 
     Args:
         vehicle: of the run, with the scenario's overrides.
         cast: which node fills which role.
         composed: all nodes in this process, on one executor.
+        respawn: start a node that dies again, if it is not the plant.
         folder: of this run, with `vehicle.yaml` in it; the nodes' parameters and logs go there.
+        holder: who runs it, for others who want its domain.
         write: takes every message, as `Recorder` says.
         progress: called with the simulation stamp in ns and a line of text.
-
-    Raises:
-        RunError: a node died, did not come up, or the planner rejected the goal.
-        PluginError: a node cannot be imported.
+        ending: is filled with what happened, whatever ends the run.
     """
-    foreign = foreign_roles(cast)
-    parameters = node_parameters(scenario, folder / "vehicle.yaml", pace)
-    values = environment(folder / "logs")
-    os.environ.update(values)
-    print(f"ROS_DOMAIN_ID={values['ROS_DOMAIN_ID']} (set it to listen in)", flush=True)
-    _print_contracts(cast, vehicle)
-    start(["uvms"])
-    nodes = _composed if composed else _separate
-    with nodes({role: parameters[role] for role in cast.started}, cast, folder, values) as group:
-        inside, watch = group
-        conductor = Conductor(
-            write,
-            watch,
-            vehicle.joint_names,
-            topics.of(vehicle),
-            topics.nodes(vehicle),
-            foreign,
-            patient=bool(cast.absent),
-            namespace=cast.namespace or None,
-        )
-        conductor.broadcast(vehicle, pace.name == "lockstep")
-        spinner = Spinner([conductor, *inside])
+
+    scenario: Scenario
+    vehicle: Vehicle
+    goal: PathGoal | JointGoal | None
+    pace: Pace
+    cast: Cast
+    composed: bool
+    respawn: bool
+    folder: Path
+    holder: Holder
+    write: Write
+    progress: Progress
+    ending: Ending = field(default_factory=Ending)
+
+    def run(self) -> None:
+        """Run to the end.
+
+        Raises:
+            RunError: a node died or did not come up, the planner rejected the goal, or somebody
+                else is in the graph.
+            PluginError: a node cannot be imported.
+            Stopped: by a signal.
+        """
+        foreign = foreign_roles(self.cast)
+        values = environment(self.folder / "logs")
+        claim = claim_domain(values, self.holder)
         try:
-            conductor.conduct(spinner, goal)
-            return _follow(conductor, spinner, to_nanoseconds(scenario.duration_s), watch, progress)
+            os.environ.update(values)
+            print(f"ROS_DOMAIN_ID={values['ROS_DOMAIN_ID']} (set it to listen in)", flush=True)
+            _print_contracts(self.cast, self.vehicle)
+            start(["uvms"])
+            self._with_nodes(values, foreign)
         finally:
-            spinner.shutdown()
+            if claim is not None:
+                claim.release()
+
+    def _with_nodes(self, values: dict[str, str], foreign: frozenset[str]) -> None:
+        company = self._company(values)
+        try:
+            conductor = self._conductor(company, foreign)
+            spinner = Spinner([conductor])
+            try:
+                self._conduct(company, conductor, spinner)
+            finally:
+                self._take_stock(conductor, spinner)
+                company.stop()
+                spinner.shutdown()
+        finally:
+            company.stop()
+
+    def _conductor(self, company: Company, foreign: frozenset[str]) -> Conductor:
+        conductor = Conductor(
+            self.write,
+            lambda: self._watch(company, conductor),
+            self.vehicle.joint_names,
+            (*topics.of(self.vehicle), topics.ROSOUT),
+            topics.nodes(self.vehicle),
+            foreign,
+            self.cast.absent,
+            namespace=self.cast.namespace or None,
+        )
+        return conductor
+
+    def _company(self, values: dict[str, str]) -> Company:
+        parameters = node_parameters(
+            self.scenario, self.folder / "vehicle.yaml", self.pace, self.holder.run_id
+        )
+        if self._in_lockstep:
+            parameters[topics.PLANT]["recorder_window"] = self._window
+        if self.respawn:
+            checkpoint = self.folder / "navigation_checkpoint.json"
+            parameters[topics.NAVIGATION]["checkpoint_file"] = str(checkpoint)
+        own = {role: parameters[role] for role in self.cast.started}
+        if self.composed:
+            return ComposedNodes(own, self.cast)
+        return SeparateNodes(own, self.cast, self.folder, values, self.respawn)
+
+    @property
+    def _in_lockstep(self) -> bool:
+        return self.pace.name == "lockstep"
+
+    @property
+    def _period(self) -> int:
+        return to_nanoseconds(self.scenario.plant.control_period_s)
+
+    @property
+    def _window(self) -> int:
+        return window_for(self.vehicle, self._period)
+
+    def _conduct(self, company: Company, conductor: Conductor, spinner: Spinner) -> None:
+        conductor.check_alone(spinner)
+        conductor.broadcast(self.vehicle, self._in_lockstep)
+        if self._in_lockstep:
+            conductor.acknowledge(self._period, self._window)
+        spinner.add(company.enter())
+        conductor.conduct(spinner, self.goal)
+        pulse = Pulse(conductor, conductor.recorder)
+        end = to_nanoseconds(self.scenario.duration_s)
+
+        def look() -> bool:
+            self._watch(company, conductor)
+            pulse.check()
+            self.progress(conductor.stamp, conductor.progress())
+            return conductor.arrived(end)
+
+        spinner.spin(until=look)
+        if spinner.signal:
+            raise Stopped(spinner.signal)
+
+    def _watch(self, company: Company, conductor: Conductor) -> None:
+        """Notice deaths and intruders; raise where the run cannot go on."""
+        for role, how in company.replace_the_dead():
+            conductor.census.forgive(role)
+            when = to_seconds(conductor.stamp)
+            self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
+        if conductor.acknowledgement is not None:
+            conductor.acknowledgement.look_after()
+        if conductor.recorder.set_back is not None:
+            before, after = map(to_seconds, conductor.recorder.set_back)
+            text = f"somebody set /clock back from {before:.2f} s to {after:.2f} s"
+            self.ending.foreign = (*conductor.census.foreign, text)
+            raise ForeignError(text)
+        if conductor.stamp and conductor.census.look():
+            self.ending.foreign = conductor.census.foreign
+            raise ForeignError(
+                f"somebody else took part: {'; '.join(conductor.census.foreign)}. End whoever does"
+                " not belong, or give the run a ROS_DOMAIN_ID of its own"
+            )
+
+    def _take_stock(self, conductor: Conductor, spinner: Spinner) -> None:
+        """What the log does not show; only of a run that began."""
+        self.ending.goal = conductor.goal_state()
+        if topics.CLOCK.name not in conductor.recorder.newest:
+            return
+        silent = conductor.count(spinner)
+        self.ending.incidents += [
+            f"{role} did not say at the end how many messages it had sent" for role in silent
+        ]
+        if conductor.acknowledgement is not None:
+            self.ending.incidents += conductor.acknowledgement.given_up
+        self.ending.sent, self.ending.lost = conductor.losses.sent(), conductor.losses.lost()
 
 
 def foreign_roles(cast: Cast) -> frozenset[str]:
@@ -102,70 +211,3 @@ def _print_contracts(cast: Cast, vehicle: Vehicle) -> None:
     for role in sorted(cast.absent):
         interface = topics.contract(role, graph, cast.namespace)
         print(f"{role} is left to you; it\n{interface}", flush=True)
-
-
-def _follow(
-    conductor: Conductor, spinner: Spinner, end: int, watch: Callable[[], None], progress: Progress
-) -> bool:
-    def look() -> bool:
-        watch()
-        progress(conductor.stamp, conductor.progress())
-        return conductor.arrived(end)
-
-    spinner.spin(until=look)
-    return conductor.stamp >= end and not _failed(conductor)
-
-
-def _failed(conductor: Conductor) -> bool:
-    return conductor.result is not None and not conductor.result.success
-
-
-Group = tuple[list[Node], Callable[[], None]]
-"""Nodes inside this process, and what raises where one of the others has died."""
-
-
-@contextmanager
-def _separate(
-    parameters: Parameters, cast: Cast, folder: Path, values: dict[str, str]
-) -> Iterator[Group]:
-    processes = NodeProcesses(folder / "logs", values)
-    print(f"starting {len(parameters)} nodes ...", file=sys.stderr, flush=True)
-    try:
-        for role, own in parameters.items():
-            file = write_parameter_file(folder / "parameters" / f"{role}.yaml", role, own)
-            command = node_command(role, file, cast.namespace, cast.node_of(role))
-            processes.start(role, command)
-        yield [], processes.check
-    finally:
-        processes.stop()
-
-
-@contextmanager
-def _composed(
-    parameters: Parameters, cast: Cast, folder: Path, values: dict[str, str]
-) -> Iterator[Group]:
-    nodes = [make_node(role, own, cast) for role, own in parameters.items()]
-    yield nodes, lambda: None
-
-
-def make_node(role: str, parameters: dict[str, Any], cast: Cast = OURS) -> Node:
-    """The node of a role inside this process, with its parameters.
-
-    Raises:
-        RunError: its class does not take the options of rclpy.node.Node.
-    """
-    name = cast.node_of(role)
-    make = registry.load(registry.NODES, name)
-    overrides = [Parameter(key, value=value) for key, value in parameters.items()]
-    if not rclpy.ok():
-        raise RunError("ROS was shut down before the nodes were made")
-    options = ["--ros-args", "-r", f"__node:={role}"]
-    if cast.namespace:
-        options += ["-r", f"__ns:=/{cast.namespace}"]
-    try:
-        return make(parameter_overrides=overrides, cli_args=options)
-    except TypeError as fault:
-        raise RunError(
-            f"{role}: {name} cannot be composed: {fault}; its __init__ must take **options and hand"
-            " them to rclpy.node.Node"
-        ) from fault

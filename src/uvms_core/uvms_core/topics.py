@@ -37,6 +37,8 @@ __all__ = [
     "NAVIGATION",
     "NODES",
     "PLANT",
+    "RECORDED",
+    "ROSOUT",
     "THRUST_ALLOCATOR",
     "WORLD_FRAME",
     "Action",
@@ -112,6 +114,10 @@ TF = Topic(
 TF_STATIC = Topic("/tf_static", "tf2_msgs/msg/TFMessage", qos=LATCHED)
 ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String", qos=LATCHED)
 DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", diagnostics.Status)
+ROSOUT = Topic("/rosout", "rcl_interfaces/msg/Log", qos=Qos(transient_local=True))
+"""Of every node of ROS, not of the loop alone; recorded where there is a graph."""
+RECORDED = Topic("recorded", "rosgraph_msgs/msg/Clock", int)
+"""Of the run, not of the loop: up to here everything is in the log. The plant waits for it."""
 
 
 def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:

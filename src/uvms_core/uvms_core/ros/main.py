@@ -10,6 +10,7 @@ from rclpy.node import Node
 from uvms_core import registry
 from uvms_core.config import Config
 from uvms_core.errors import UvmsError
+from uvms_core.ros.lifeline import hold_on
 from uvms_core.ros.node import NodeConfig
 from uvms_core.ros.parameters import describe
 from uvms_core.ros.spin import Spinner, start
@@ -27,6 +28,7 @@ def main_of(make: Callable[[], Node], args: Sequence[str] | None = None) -> int:
     if "-h" in args or "--help" in args:
         print(help_text(make))
         return 0
+    hold_on()
     start([sys.argv[0], *args])
     try:
         spinner = Spinner([make()])

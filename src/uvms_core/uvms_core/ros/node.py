@@ -1,5 +1,6 @@
 """What our nodes share: parameters, topics by table, the tick gate, diagnostics, readiness."""
 
+import json
 import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import partial
@@ -93,6 +94,7 @@ class UvmsNode(Node):
         # What some node of the loop reads: a run cannot start before it has a subscriber.
         self._needed = {t for n in self.graph.values() for t in n.inputs} - {topics.CLOCK}
         self._outputs: dict[Topic, Publisher] = {}
+        self._sent: dict[str, int] = {}  # messages by topic's name, for whoever counts the lost
         self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
         self._diagnostics = self._sender(topics.DIAGNOSTICS)
         self._status = Status(0, name)
@@ -105,6 +107,7 @@ class UvmsNode(Node):
         self._receivers: dict[Topic, Any] = {}
         self._readers: dict[str, Callable[[bytes], Any]] = {}
         self.create_service(Trigger, f"{name}/ready", self._answer_ready)
+        self.create_service(Trigger, f"{name}/sent", self._answer_sent)
 
     def config(self, model: type[C]) -> C:
         """The node's configuration from its ROS parameters."""
@@ -337,11 +340,22 @@ class UvmsNode(Node):
         names, wire = self.names_of(topic), codec(topic.type)
         publisher = self.create_publisher(message_class(topic), topic.name, qos_profile(topic.qos))
         self._outputs[topic] = publisher
-        return lambda signal: publisher.publish(wire.encode(to_message(topic, signal, names)))
+        sent, key = self._sent, topic.name
+        sent[key] = 0
+
+        def publish(signal: Any) -> None:
+            publisher.publish(wire.encode(to_message(topic, signal, names)))
+            sent[key] += 1
+
+        return publish
 
     def _answer_ready(self, _: Any, response: Any) -> Any:
         lacks = self.missing_peers()
         response.success, response.message = not lacks, SEPARATOR.join(lacks)
+        return response
+
+    def _answer_sent(self, _: Any, response: Any) -> Any:
+        response.success, response.message = True, json.dumps(self._sent)
         return response
 
 

@@ -38,6 +38,8 @@ class Spinner:
 
     While events keep coming the executor does not look at the clock; a callback that comes often
     calls `yield_turn`, so that deadlines and `until` are checked all the same.
+
+    `signal` is the name of the signal that ended it, empty before.
     """
 
     def __init__(self, nodes: Sequence[Node]) -> None:
@@ -45,15 +47,27 @@ class Spinner:
         self._executor = EventsExecutor()
         for node in nodes:
             self._executor.add_node(node)
+        self.signal = ""
         self.done: Future = Future()
         self._turn: Future = Future()
         self._turn_ends = 0.0
-        self._wakers: list[Any] = [node for node in nodes if hasattr(node, "on_wake")]
+        self._wakers: list[Any] = []
+        self._note_wakers(nodes)
         # Threads created before `start` (by a BLAS library, say) do not block the signals; a signal
         # delivered to one of them runs this handler, between two sleeps of the main thread.
         for number in SIGNALS:
-            signal.signal(number, lambda *_: self._finish())
+            signal.signal(number, lambda number, _: self._finish(number))
         threading.Thread(target=self._take_signal, daemon=True).start()
+
+    def add(self, nodes: Sequence[Node]) -> None:
+        """Run further nodes."""
+        for node in nodes:
+            self._nodes.append(node)
+            self._executor.add_node(node)
+        self._note_wakers(nodes)
+
+    def _note_wakers(self, nodes: Sequence[Node]) -> None:
+        self._wakers += [node for node in nodes if hasattr(node, "on_wake")]
 
     def stop(self) -> None:
         """End `spin` from any thread."""
@@ -65,7 +79,9 @@ class Spinner:
         if time.monotonic() >= self._turn_ends and not self._turn.done():
             self._turn.set_result(None)
 
-    def _finish(self) -> None:
+    def _finish(self, number: int | None = None) -> None:
+        if number is not None:
+            self.signal = self.signal or signal.Signals(number).name
         for future in (self.done, self._turn):
             if not future.done():
                 future.set_result(None)
@@ -82,6 +98,10 @@ class Spinner:
         if not self.done.done():
             self._executor.spin_until_future_complete(self._turn, timeout_sec=wait)
         self._wake()
+
+    def serve(self, timeout: float) -> None:
+        """Serve events for this long, s, even after a `stop`."""
+        self._executor.spin_until_future_complete(Future(), timeout_sec=timeout)
 
     def spin_for(self, future: Future, timeout: float) -> bool:
         """Serve callbacks until the future is done; False after the time-out, s, or a `stop`."""
@@ -101,8 +121,9 @@ class Spinner:
         rclpy.try_shutdown()
 
     def _take_signal(self) -> None:
-        signal.sigwait(SIGNALS)
-        self.stop()
+        number = signal.sigwait(SIGNALS)
+        self._finish(number)
+        self._executor.wake()
 
     def _sleep(self) -> float:
         deadlines = [node.deadline() for node in self._wakers]

@@ -1,6 +1,7 @@
 """Node `plant`: vehicle, arm, water and sensors; it owns time and publishes /clock."""
 
 import time
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -9,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from uvms_core import diagnostics, topics
 from uvms_core.config import Config
+from uvms_core.ros.endpoints import Endpoint, Publishers
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
 from uvms_core.ros.roll_call import SEPARATOR, RollCall, unread
@@ -29,6 +31,8 @@ NOTICE = 10.0
 """How often it logs what is still missing, s of wall time."""
 SETTLE = 1.0
 """How long all must have been there before the start, s of wall time."""
+LOOK = 1.0
+"""How often a running plant looks for others that publish its topics, s of wall time."""
 
 
 class PaceConfig(Config):
@@ -49,6 +53,12 @@ class PaceConfig(Config):
     duration_s: float = Field(0.0, ge=0.0, description="where the plant stops, s; 0: never")
     auto_start: bool = Field(True, description="start by itself as soon as all nodes are there")
     start_paused: bool = Field(False, description="close the loop at t = 0, then wait in pause")
+    recorder_window: int = Field(
+        0,
+        ge=0,
+        description="control periods that lockstep may be ahead of what a recorder says on"
+        " `recorded`; 0: it waits for none",
+    )
 
 
 class PlantNode(UvmsNode):
@@ -79,6 +89,13 @@ class PlantNode(UvmsNode):
         self._roll_call = RollCall(self, others, foreign=None, graph=self.graph)
         self._sensor_topics = in_order_of_publication(self.vehicle)
         self._notice = time.monotonic() + NOTICE
+        self._rivals = Publishers(self, {topic.name: 1 for topic in self.graph[self.role].outputs})
+        self._rivals.know()
+        self._look = time.monotonic() + LOOK
+        self._recorded = 0
+        self._held = False
+        if self.lockstep and self._pace.recorder_window:
+            self.listen(topics.RECORDED, self._take_recorded)
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
             self.listen(topic, partial(self._take, topic.name))
         self.create_service(Trigger, "start", self._answer_start)
@@ -94,6 +111,8 @@ class PlantNode(UvmsNode):
             self._deadline = time.monotonic() + POLL
             if self._wanted:
                 self._start_when_settled()
+        elif self._held:
+            self._say_held()
         elif self.lockstep:
             self._time_out()
         else:
@@ -113,6 +132,9 @@ class PlantNode(UvmsNode):
         idle = unread(self._roll_call.foreign, self.graph)
         if own := [lack for lack in self.missing_peers() if lack not in idle]:
             lacks[self.role] = SEPARATOR.join(own)
+        if rivals := self._rivals.strangers():
+            lacks[self.role] = _rivals_text(rivals)
+            self.report(0, diagnostics.ERROR, lacks[self.role])
         if lacks and time.monotonic() > self._notice:
             self._notice = time.monotonic() + NOTICE
             missing = "\n".join(f"  {role}: {lack}" for role, lack in lacks.items())
@@ -121,6 +143,7 @@ class PlantNode(UvmsNode):
 
     def _start(self) -> None:
         self._running = True
+        self._rivals.know()
         self._publish_tick()
         self._deadline = time.monotonic()
         self._deadline = self._next_deadline(self._pace.first_timeout_s)
@@ -141,9 +164,46 @@ class PlantNode(UvmsNode):
             return
         if not self.lockstep:
             self._warn_of_stale()
+        elif self._ahead_of_recorder():
+            return
         self._plant.step(*map(self._usable, COMMANDS))
         self._publish_tick()
         self._deadline = self._next_deadline(self._pace.timeout_s)
+        self._look_for_rivals()
+
+    def _ahead_of_recorder(self) -> bool:
+        """Whether the plant has to wait; it then goes on with the commands that it has."""
+        window = self._pace.recorder_window * self.period
+        self._held = window > 0 and self._plant.stamp - self._recorded >= window
+        if self._held:
+            self._deadline = time.monotonic() + self._pace.timeout_s
+        return self._held
+
+    def _take_recorded(self, stamp: int) -> None:
+        self._recorded = max(self._recorded, stamp)
+        if self._held:
+            self._held = False
+            self._advance()
+
+    def _say_held(self) -> None:
+        """Nothing is lost while it waits, so it waits without end, and says so."""
+        self._deadline = time.monotonic() + self._pace.timeout_s
+        text = (
+            f"t = {to_seconds(self._plant.stamp):.2f} s: waiting for the recorder, which has "
+            f"recorded up to t = {to_seconds(self._recorded):.2f} s"
+        )
+        self.get_logger().warning(text)
+        self.report(self._plant.stamp, diagnostics.WARN, text, lockstep_timeouts=self._timeouts)
+
+    def _look_for_rivals(self) -> None:
+        now = time.monotonic()
+        if now < self._look:
+            return
+        self._look = now + LOOK
+        if rivals := self._rivals.strangers():
+            text = _rivals_text(rivals)
+            self.get_logger().error(text, throttle_duration_sec=NOTICE)
+            self.report(self._plant.stamp, diagnostics.ERROR, text)
 
     def _publish_tick(self) -> None:
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
@@ -195,13 +255,14 @@ class PlantNode(UvmsNode):
         return None if self._stale(name) else self._commands[name]
 
     def _answer_start(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        response.success, response.message = (
-            True,
-            "already running",
-        )
-        if not self._running:
-            response.message = "started"
-            self._start()
+        response.success, response.message = True, "already running"
+        if self._running:
+            return response
+        if rivals := self._rivals.strangers():
+            response.success, response.message = False, _rivals_text(rivals)
+            return response
+        response.message = "started"
+        self._start()
         return response
 
     def _answer_pause(self, request: SetBool.Request, response: SetBool.Response):
@@ -221,6 +282,10 @@ class PlantNode(UvmsNode):
             self._advance()
         else:
             self._deadline += self._pace.first_timeout_s
+
+
+def _rivals_text(rivals: Sequence[Endpoint]) -> str:
+    return f"another plant is here: {SEPARATOR.join(map(str, rivals))}"
 
 
 def main(args=None) -> int:

@@ -1,0 +1,89 @@
+"""Who else is in the graph: refuses an occupied one before a run, notices intruders during it."""
+
+import time
+from collections.abc import Collection, Mapping
+
+from rclpy.node import Node
+
+from uvms_bringup.errors import RunError
+from uvms_core import topics
+from uvms_core.ros.endpoints import Publishers
+from uvms_core.topic import NodeTopics
+
+DISCOVERY_S = 0.7
+"""Wall time in which a node finds who is in the graph already."""
+LOOK_S = 0.5
+"""Wall time between two looks during a run."""
+CONDUCTOR = "conductor"
+
+
+class Census:
+    """Counts the publishers of the loop's topics and of /clock.
+
+    Args:
+        node: that looks.
+        graph: what each role reads and writes.
+        absent: roles that are left to the user.
+    """
+
+    def __init__(
+        self, node: Node, graph: Mapping[str, NodeTopics], absent: Collection[str] = ()
+    ) -> None:
+        self._node = node
+        self._roles = set(graph) - set(absent)
+        own = {topic.name for role in self._roles for topic in graph[role].outputs}
+        everybody = {topic.name for each in graph.values() for topic in each.outputs}
+        self._before = Publishers(node, dict.fromkeys(own, 0))
+        self._during = Publishers(node, dict.fromkeys(everybody, 1))
+        self._due = 0.0
+        self.foreign: tuple[str, ...] = ()
+
+    def check_alone(self) -> None:
+        """Before the run's own nodes are in the graph.
+
+        Raises:
+            RunError: somebody else is there; names who, and what to do.
+        """
+        strangers = self._before.strangers()
+        found = sorted({str(each) for each in strangers}) or self._namesakes()
+        if found:
+            raise RunError(self._occupied(found))
+
+    def check_alone_with_nodes(self) -> None:
+        """When the run's own nodes are all there: whoever comes now does not belong.
+
+        Raises:
+            RunError: somebody else has come in the meantime.
+        """
+        if strangers := self._during.strangers():
+            raise RunError(self._occupied([str(each) for each in strangers]))
+        self._during.know()
+
+    def forgive(self, role: str) -> None:
+        """The node of this role died; another takes its place."""
+        self._during.forgive(role)
+
+    def look(self) -> bool:
+        """From time to time: note who does not belong; whether somebody was ever found."""
+        now = time.monotonic()
+        if now >= self._due:
+            self._due = now + LOOK_S
+            texts = {str(each) for each in self._during.strangers()}
+            self.foreign = tuple(sorted({*self.foreign, *texts}))
+        return bool(self.foreign)
+
+    def _occupied(self, found: list[str]) -> str:
+        domain = self._node.context.get_domain_id()
+        return (
+            f"ROS_DOMAIN_ID={domain} is occupied: {'; '.join(found)}. End whoever does not belong,"
+            " set another ROS_DOMAIN_ID, or set none, so that a free one is chosen"
+        )
+
+    def _namesakes(self) -> list[str]:
+        """Nodes of our names in our namespace that publish no topic of the loop (yet)."""
+        space = self._node.get_namespace().rstrip("/")
+        names = {f"{space}/{role}" for role in self._roles}
+        conductor = f"{space}/{CONDUCTOR}"
+        there = self._before.live(topics.ROSOUT.name)  # every node publishes there
+        twins = [each for each in there if each.node == conductor and not each.is_ours]
+        return [each.who for each in there if each.node in names] + [one.who for one in twins]
