@@ -39,7 +39,11 @@ def altered(topic, data, names=VEHICLE.joint_names, **fields):
 
 
 @pytest.mark.parametrize("topic", READERS, ids=lambda topic: topic.name)
-@pytest.mark.parametrize("shift", [HOUR, -HOUR], ids=["hour ahead", "hour back"])
+@pytest.mark.parametrize(
+    "shift",
+    [HOUR, pytest.param(-HOUR, marks=pytest.mark.long)],
+    ids=["hour ahead", "hour back"],
+)
 def test_one_wrong_stamp_blocks_nobody(topic, shift, saw):
     with wire() as w:
         w.start()
@@ -96,7 +100,7 @@ IMPOSSIBLE = [
 ]
 
 
-@pytest.mark.parametrize("pace", ["realtime", "lockstep"])
+@pytest.mark.parametrize("pace", [pytest.param("realtime", marks=pytest.mark.long), "lockstep"])
 def test_one_impossible_sample_is_left_out_and_its_tick_goes_on(pace, saw):
     """In lockstep the loop would stand still if a refused sample blocked a tick."""
     worst = 0.0
