@@ -5,6 +5,7 @@ time: in one line.
 """
 
 import os
+import signal
 import sys
 
 INTERRUPTED = 130
@@ -16,6 +17,7 @@ TRACEBACK = "UVMS_TRACEBACK"
 def main() -> int:
     """Run the command line of this process; returns its exit code."""
     try:
+        _take_signals()
         _print_any_text()
         from uvms_bringup.cli import main as run
 
@@ -25,6 +27,11 @@ def main() -> int:
         return INTERRUPTED
     except Exception as fault:
         return _internal_error(fault)
+
+
+def _take_signals() -> None:
+    """Whoever started this program may have blocked them; ROS does in its own processes."""
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, (signal.SIGINT, signal.SIGTERM))
 
 
 def _print_any_text() -> None:
