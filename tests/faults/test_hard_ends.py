@@ -100,6 +100,12 @@ def test_a_disk_that_is_full_in_the_middle(run, tmp_path, saw, command):
     saw("disk full in the middle of a run or report", "one line, not exit 0")
 
 
+def _default_signals():
+    """A shell that starts the tests in the background has them ignore SIGINT."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    signal.signal(signal.SIGTERM, signal.SIG_DFL)
+
+
 def interrupt(arguments, after, cwd, number=signal.SIGINT):
     """Exit code and output of a command that gets a signal some seconds after Python's start."""
     process = subprocess.Popen(
@@ -109,6 +115,7 @@ def interrupt(arguments, after, cwd, number=signal.SIGINT):
         stderr=subprocess.STDOUT,
         text=True,
         start_new_session=True,
+        preexec_fn=_default_signals,
     )
     assert process.stdout.readline().strip() == UP
     time.sleep(after)

@@ -134,19 +134,34 @@ class UvmsNode(Node):
         for topic in inputs:
             self._subscribe(topic, partial(self._receive, self._intake, topic))
 
-    def listen(self, topic: Topic, callback: Callable[[Any], None]) -> None:
+    def listen(
+        self,
+        topic: Topic,
+        callback: Callable[[Any], None],
+        on_refused: Callable[[int | None], None] = lambda stamp: None,
+    ) -> None:
         """Subscribe; the callback gets checked and possible signals, and its faults are reported.
 
-        The topic is not an input of the node's ticks; see `connect`.
+        The topic is not an input of the node's ticks; see `connect`. `on_refused` is called with
+        the stamp of a message that is not used, None where that cannot be read either.
         """
         read = self._reader(topic)
 
-        def take(data: bytes) -> None:
+        def checked(data: bytes) -> Any:
             with np.errstate(all="ignore"):  # what overflows is refused
                 signal = read(data)
                 if topic.signal is not int and topic.signal is not Status:
                     self.plausibility.admit(topic, signal)
-            callback(signal)
+            return signal
+
+        def take(data: bytes) -> None:
+            try:
+                signal = checked(data)
+            except UvmsError as fault:
+                self.refuse(self._status.stamp, [fault])
+                on_refused(stamp_in(data))
+            else:
+                callback(signal)
 
         self._subscribe(topic, lambda data: self.guard(lambda: take(data)))
 

@@ -10,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from uvms_core import diagnostics, topics
 from uvms_core.config import Config
+from uvms_core.errors import StampError
 from uvms_core.ros.endpoints import Endpoint, Publishers
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import UvmsNode
@@ -79,6 +80,7 @@ class PlantNode(UvmsNode):
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
         self._commands: dict[str, Any] = {}
+        self._without: set[str] = set()  # commands of this tick that came but cannot be used
         self._running = False
         self._paused = self._pace.start_paused
         self._wanted = self._pace.auto_start
@@ -97,7 +99,8 @@ class PlantNode(UvmsNode):
         if self.lockstep and self._pace.recorder_window:
             self.listen(topics.RECORDED, self._take_recorded)
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
-            self.listen(topic, partial(self._take, topic.name))
+            name = topic.name
+            self.listen(topic, partial(self._take, name), partial(self._take_refused, name))
         self.create_service(Trigger, "start", self._answer_start)
         self.create_service(SetBool, "pause", self._answer_pause)
 
@@ -149,14 +152,35 @@ class PlantNode(UvmsNode):
         self._deadline = self._next_deadline(self._pace.first_timeout_s)
 
     def _take(self, name: str, command: ThrusterCommand | JointCommand) -> None:
+        newest = self._commands.get(name)
+        if command.stamp > self._plant.stamp:
+            raise StampError(
+                f"{name}: its stamp, {to_seconds(command.stamp):.3f} s, is ahead of the plant's"
+                f" time, {to_seconds(self._plant.stamp):.3f} s"
+            )
+        if newest is not None and command.stamp <= newest.stamp:
+            raise StampError(
+                f"{name}: its stamp, {to_seconds(command.stamp):.3f} s, is not after that of the"
+                f" last command, {to_seconds(newest.stamp):.3f} s"
+            )
         self._commands[name] = command
         if self.lockstep and self._complete():
             self._advance()
 
+    def _take_refused(self, name: str, stamp: int | None) -> None:
+        """A command for this tick that cannot be used: nothing better will come to wait for."""
+        if stamp == self._plant.stamp:
+            self._without.add(name)
+            if self.lockstep and self._complete():
+                self._advance()
+
     def _complete(self) -> bool:
-        return len(self._commands) == 2 and all(
-            command.stamp == self._plant.stamp for command in self._commands.values()
-        )
+        """Whether every command for the present stamp has come, for better or worse."""
+        return all(name in self._without or self._is_new(name) for name in COMMANDS)
+
+    def _is_new(self, name: str) -> bool:
+        command = self._commands.get(name)
+        return command is not None and command.stamp == self._plant.stamp
 
     def _advance(self) -> None:
         if not self._running or self._paused or self._finished:
@@ -167,6 +191,7 @@ class PlantNode(UvmsNode):
         elif self._ahead_of_recorder():
             return
         self._plant.step(*map(self._usable, COMMANDS))
+        self._without.clear()
         self._publish_tick()
         self._deadline = self._next_deadline(self._pace.timeout_s)
         self._look_for_rivals()

@@ -23,6 +23,9 @@ from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 Turns = Annotated[float, Field(ge=-720.0, le=720.0)]
 """An attitude in degrees: more than two turns is a mistake."""
 
+Speed = Annotated[float, Field(ge=-100.0, le=100.0)]
+"""Of vehicle or water, m/s or rad/s: several times the fastest that moves under water."""
+
 
 class PlantConfig(StartConfig):
     """Integration step, control period, start and current."""
@@ -32,7 +35,7 @@ class PlantConfig(StartConfig):
     initial_rpy_deg: tuple[Turns, Turns, Turns] = Field(
         (0.0, 0.0, 0.0), description="roll, pitch, yaw (ZYX) at the start, degrees"
     )
-    initial_velocity: tuple[float, float, float, float, float, float] = Field(
+    initial_velocity: tuple[Speed, Speed, Speed, Speed, Speed, Speed] = Field(
         (0.0,) * 6, description="velocity over ground at the start, body frame, m/s and rad/s"
     )
     initial_posture: str = Field(
@@ -43,7 +46,7 @@ class PlantConfig(StartConfig):
         description="joint angles at the start, degrees, instead of the posture's: one a joint, or"
         " by joint name for some; empty: the posture",
     )
-    current_ned_m_s: tuple[float, float, float] = Field(
+    current_ned_m_s: tuple[Speed, Speed, Speed] = Field(
         (0.0, 0.0, 0.0), description="velocity of the water in map_ned, m/s"
     )
 
