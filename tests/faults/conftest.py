@@ -4,6 +4,7 @@
 """
 
 import os
+from collections import defaultdict
 from pathlib import Path
 
 import pytest
@@ -11,11 +12,14 @@ import pytest
 LONG = os.environ.get("UVMS_FAULTS") == "long"
 TABLE = os.environ.get("UVMS_FAULTS_TABLE", "")
 BEGIN, END = "<!-- table -->", "<!-- end of table -->"
-ROWS: list[tuple[str, str, str, str]] = []
+SEEN: dict[str, list[tuple[str, str, int]]] = defaultdict(list)
+"""What each test saw: fault, outcome, number of cases; by the test's node id."""
+FAILED: dict[str, str] = {}
+"""Why a test failed, in one line, by its node id."""
 
 
 def pytest_collection_modifyitems(items):
-    """Skip nothing silently: long tests are deselected by their marker alone."""
+    """Long tests are skipped, and listed as skipped, unless they are asked for."""
     if not LONG:
         skip = pytest.mark.skip(reason="long: run with `make faults`")
         for item in items:
@@ -27,30 +31,42 @@ def pytest_collection_modifyitems(items):
 def saw(request):
     """Record what a fault led to: `saw("two graphs on one domain", "both exit 3, named")`."""
 
-    def record(fault: str, outcome: str, cases: str = "1") -> None:
-        ROWS.append((request.node.nodeid, fault, cases, outcome))
+    def record(fault: str, outcome: str, cases: str | int = 1) -> None:
+        SEEN[request.node.nodeid].append((fault, outcome, int(cases)))
 
     return record
 
 
-def pytest_sessionfinish(session):
-    """Write the table where `make faults` asks for it."""
-    if not TABLE or not ROWS:
-        return
-    failed = {r.nodeid for r in session.config.stash.get(REPORTS, []) if r.failed}
-    lines = [f"| {f} | {n} | {'**FAILED:** ' if i in failed else ''}{o} |" for i, f, n, o in ROWS]
-    page = Path(TABLE)
-    before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-    table = "\n".join(["| fault | cases | outcome |", "|---|---|---|", *lines])
-    after = rest.split(END)[1]
-    page.write_text(f"{before}{BEGIN}\n{table}\n{END}{after}", encoding="utf-8")
-
-
-REPORTS = pytest.StashKey[list]()
-
-
 @pytest.hookimpl(wrapper=True)
 def pytest_runtest_makereport(item):
+    """Note who fails, so that the table shows it."""
     report = yield
-    item.config.stash.setdefault(REPORTS, []).append(report)
+    if report.failed:
+        FAILED[item.nodeid] = report.longreprtext.strip().splitlines()[-1]
     return report
+
+
+def pytest_sessionfinish(session):
+    """Write the table where `make faults` asks for it, and only where all tests have run."""
+    if not TABLE:
+        return
+    options = session.config.option
+    narrowed = options.keyword or options.markexpr or session.config.args != ["tests/faults"]
+    if narrowed or session.shouldstop or session.shouldfail:
+        print(f"\n{TABLE} is left as it is: only a whole `make faults` writes it")
+        return
+    page = Path(TABLE)
+    before, rest = page.read_text(encoding="utf-8").split(BEGIN)
+    table = "\n".join(["| fault | cases | outcome |", "|---|---|---|", *_rows()])
+    page.write_text(f"{before}{BEGIN}\n{table}\n{END}{rest.split(END)[1]}", encoding="utf-8")
+
+
+def _rows():
+    """One for each fault and outcome, then one for each test that failed."""
+    counts: dict[tuple[str, str], int] = defaultdict(int)
+    for test, rows in SEEN.items():
+        for fault, outcome, cases in rows if test not in FAILED else ():
+            counts[fault, outcome] += cases
+    yield from (f"| {fault} | {n} | {outcome} |" for (fault, outcome), n in counts.items())
+    for test, why in FAILED.items():
+        yield f"| `{test.rpartition('/')[2]}` | 1 | **failed**: {why.replace('|', '/')} |"
