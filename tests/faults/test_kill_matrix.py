@@ -3,11 +3,13 @@
 import os
 import random
 import signal
+import subprocess
+import sys
 import time
 
 import numpy as np
 import pytest
-from live import LiveRun, running
+from live import LiveRun, children, gone, running
 
 from uvms_analysis.outcome import EXIT_CODES
 from uvms_core import topics
@@ -19,6 +21,8 @@ DURATION_S = 24
 STALE_S = 0.5
 """The plant's `stale_s`: age at which it takes a command for missing."""
 HALT_S = 3.0
+RECOVERED_NS = 2_000_000_000
+"""Simulated time at the end of a run in which everything must work again."""
 
 
 def ages_of_used_commands(run: LiveRun) -> np.ndarray:
@@ -52,6 +56,21 @@ def check_truth(run: LiveRun, pace: str) -> None:
         assert outcome in ("aborted", "invalid")
 
 
+def check_recovered(run: LiveRun) -> None:
+    """At the end every node works: the plant has used new commands for a while."""
+    applied = run.log.signals(topics.APPLIED_THRUST)
+    last = [each for each in applied if each.stamp > applied[-1].stamp - RECOVERED_NS]
+    assert not any(each.thruster_safe or each.joint_safe for each in last)
+    commands = {each.thruster_command_stamp for each in last}
+    assert len(commands) > 0.5 * len(last)
+
+
+def verdict(run: LiveRun) -> int:
+    """Exit code of `uvms check`."""
+    command = [sys.executable, "-m", "uvms_bringup.entry", "check", str(run.folder / "run.mcap")]
+    return subprocess.run(command, capture_output=True, text=True).returncode
+
+
 def disturb(run: LiveRun, role: str, number: int, pause_s: float) -> None:
     run.await_ticks(60_000)
     time.sleep(pause_s)
@@ -71,10 +90,13 @@ def run_cell(folder, role, name, pace, pause_s) -> LiveRun:
     check_truth(run, pace)
     if pace == "realtime" and name == "SIGKILL" and role != topics.PLANT:
         assert any(f"node {role} ended by signal 9" in text for text in run.end.incidents)
+        check_recovered(run)
     elif name == "SIGKILL":
         assert run.end.stopped_by.startswith(f"node {role} ended by signal 9")
     else:
         assert run.summary["sim_duration_s"] == pytest.approx(DURATION_S)
+        check_recovered(run)
+    assert (verdict(run) == 0) == (run.summary["check"]["verdict"] == "complete")
     return run
 
 
@@ -121,3 +143,22 @@ def test_the_recorder_halted_at_any_instant(tmp_path, saw, pace):
         if pace == "lockstep":
             assert run.end.lost == {}
     saw(f"SIGSTOP of the recorder, {pace}", "nothing lost, or counted and invalid", "5")
+
+
+@pytest.mark.long
+@pytest.mark.parametrize("pace", PACES)
+def test_the_recorder_killed_at_any_instant(tmp_path, saw, pace):
+    for instant in range(5):
+        draw = random.Random(f"kill recorder {pace} {instant}")
+        arguments = ("run", "hover", "--duration", str(DURATION_S), "--pace", *PACES[pace])
+        with running(tmp_path / str(instant), *arguments) as run:
+            run.await_ticks(60_000)
+            time.sleep(draw.uniform(0.0, 4.0))
+            nodes = list(children(run.process.pid).values())
+            run.signal(signal.SIGKILL)
+            run.code()
+        assert gone(nodes)
+        assert run.log.fault  # the log opens, and says that its writer was killed
+        assert verdict(run) == 1
+        assert ages_of_used_commands(run).max() <= STALE_S + 1e-9
+    saw(f"SIGKILL of the recorder, {pace}", "no orphan; the log opens and is not complete", "5")
