@@ -10,8 +10,10 @@ from uvms_core import topics
 from uvms_core.ros.endpoints import Publishers
 from uvms_core.topic import NodeTopics
 
-DISCOVERY_S = 0.7
-"""Wall time in which a node finds who is in the graph already."""
+DISCOVERY_S = 3.5
+"""Wall time in which a node finds who is in the graph already, on a loaded machine, too."""
+REST_S = 1.0
+"""Wall time from the first of them until all are found."""
 LOOK_S = 0.5
 """Wall time between two looks during a run."""
 CONDUCTOR = "conductor"
@@ -44,10 +46,16 @@ class Census:
         Raises:
             RunError: somebody else is there; names who, and what to do.
         """
-        strangers = self._before.strangers()
-        found = sorted({str(each) for each in strangers}) or self._namesakes()
-        if found:
+        if found := self._others():
             raise RunError(self._occupied(found))
+
+    def sees_others(self) -> bool:
+        """Whether somebody is there before the run's own nodes."""
+        return bool(self._others())
+
+    def _others(self) -> list[str]:
+        strangers = self._before.strangers()
+        return sorted({str(each) for each in strangers}) or self._namesakes()
 
     def check_alone_with_nodes(self) -> None:
         """When the run's own nodes are all there: whoever comes now does not belong.

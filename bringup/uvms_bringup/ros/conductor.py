@@ -15,7 +15,7 @@ from unique_identifier_msgs.msg import UUID
 
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.acknowledge import Acknowledgement
-from uvms_bringup.ros.census import CONDUCTOR, DISCOVERY_S, Census
+from uvms_bringup.ros.census import CONDUCTOR, DISCOVERY_S, REST_S, Census
 from uvms_bringup.ros.losses import Losses
 from uvms_bringup.ros.recorder import Recorder, Write
 from uvms_bringup.ros.state_publisher import StateBroadcaster
@@ -119,13 +119,18 @@ class Conductor(Node):
             self, self.recorder, self._graph, self._foreign, further, period, window
         )
 
-    def check_alone(self, spinner: Spinner) -> None:
-        """Look whether the graph is empty, as `Census.check_alone` says."""
-        found = time.monotonic() + DISCOVERY_S
+    def check_alone(self, spinner: Spinner, others: bool) -> None:
+        """Look whether the graph is empty, as `Census.check_alone` says.
+
+        `others`: whether there may be somebody in the domain, whom to find takes time.
+        """
+        found = time.monotonic() + DISCOVERY_S * others
         while time.monotonic() < found:
             self._watch()
             self._check_stopped(spinner)
             spinner.spin_once(0.05)
+            if self.census.sees_others():  # the rest of them will be found soon
+                found = min(found, time.monotonic() + REST_S)
         self.census.check_alone()
 
     @property

@@ -8,7 +8,7 @@ domain is seen by the port that every participant of DDS opens there, and in the
 import os
 import socket
 import tempfile
-from collections.abc import MutableMapping
+from collections.abc import Mapping, MutableMapping
 from pathlib import Path
 
 from uvms_bringup.claim import Claim, Holder, TakenError
@@ -32,7 +32,7 @@ def claim_domain(values: MutableMapping[str, str], holder: Holder) -> Claim | No
         return _claim_given(given, holder)
     for offset in range(len(DOMAINS)):
         domain = DOMAINS[(os.getpid() + offset) % len(DOMAINS)]
-        if _is_silent(domain):
+        if is_silent(domain):
             try:
                 claim = Claim(_file(domain), holder)
             except (TakenError, OSError):
@@ -63,7 +63,13 @@ def _file(domain: int) -> Path:
     return Path(tempfile.gettempdir()) / f"uvms_domain_{domain}.lock"
 
 
-def _is_silent(domain: int) -> bool:
+def may_have_others(values: Mapping[str, str]) -> bool:
+    """Whether somebody may be in the domain that the environment names, here or elsewhere."""
+    beyond = values.get("ROS_AUTOMATIC_DISCOVERY_RANGE") not in ("LOCALHOST", "OFF")
+    return beyond or not is_silent(int(values["ROS_DOMAIN_ID"]))
+
+
+def is_silent(domain: int) -> bool:
     """Whether no participant of DDS on this machine is in the domain."""
     port = _FIRST_PORT + _PORTS_A_DOMAIN * domain + _OF_FIRST_PARTICIPANT
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as probe:

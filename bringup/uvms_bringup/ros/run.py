@@ -15,7 +15,7 @@ from uvms_bringup.pace import Pace
 from uvms_bringup.ros.acknowledge import window_for
 from uvms_bringup.ros.company import Company, ComposedNodes, SeparateNodes
 from uvms_bringup.ros.conductor import Conductor
-from uvms_bringup.ros.domain import claim_domain
+from uvms_bringup.ros.domain import claim_domain, may_have_others
 from uvms_bringup.ros.parameter_file import node_parameters
 from uvms_bringup.ros.processes import environment
 from uvms_bringup.ros.pulse import Pulse
@@ -80,19 +80,20 @@ class GraphRun:
             os.environ.update(values)
             print(f"ROS_DOMAIN_ID={values['ROS_DOMAIN_ID']} (set it to listen in)", flush=True)
             _print_contracts(self.cast, self.vehicle)
+            others = may_have_others(values)  # asked before this process is in the domain
             start(["uvms"])
-            self._with_nodes(values, foreign)
+            self._with_nodes(values, foreign, others)
         finally:
             if claim is not None:
                 claim.release()
 
-    def _with_nodes(self, values: dict[str, str], foreign: frozenset[str]) -> None:
+    def _with_nodes(self, values: dict[str, str], foreign: frozenset[str], others: bool) -> None:
         company = self._company(values)
         try:
             conductor = self._conductor(company, foreign)
             spinner = Spinner([conductor])
             try:
-                self._conduct(company, conductor, spinner)
+                self._conduct(company, conductor, spinner, others)
             finally:
                 self._take_stock(conductor, spinner)
                 company.stop()
@@ -139,8 +140,10 @@ class GraphRun:
     def _window(self) -> int:
         return window_for(self.vehicle, self._period)
 
-    def _conduct(self, company: Company, conductor: Conductor, spinner: Spinner) -> None:
-        conductor.check_alone(spinner)
+    def _conduct(
+        self, company: Company, conductor: Conductor, spinner: Spinner, others: bool
+    ) -> None:
+        conductor.check_alone(spinner, others)
         conductor.broadcast(self.vehicle, self._in_lockstep)
         if self._in_lockstep:
             conductor.acknowledge(self._period, self._window)
