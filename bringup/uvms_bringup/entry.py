@@ -17,6 +17,7 @@ TRACEBACK = "UVMS_TRACEBACK"
 def main() -> int:
     """Run the command line of this process; returns its exit code."""
     try:
+        _open_streams()
         _take_signals()
         _print_any_text()
         from uvms_bringup.cli import main as run
@@ -27,6 +28,16 @@ def main() -> int:
         return INTERRUPTED
     except Exception as fault:
         return _internal_error(fault)
+
+
+def _open_streams() -> None:
+    """Streams that were closed lead nowhere; a log that is opened must not take their numbers."""
+    for number, name in enumerate(("stdin", "stdout", "stderr")):
+        try:
+            os.fstat(number)
+        except OSError:
+            os.open(os.devnull, os.O_RDWR)  # takes the lowest number that is free
+            setattr(sys, name, open(number, "w" if number else "r", closefd=False))
 
 
 def _take_signals() -> None:

@@ -45,7 +45,9 @@ class Scenario(Config):
         description="values that replace those of the vehicle file, by dotted path, such as"
         " `hull.mass_kg: 190`",
     )
-    seed: int = Field(1, ge=0, le=2**63 - 1, description="seed of all random numbers of the run")
+    seed: int = Field(
+        1, strict=True, ge=0, le=2**63 - 1, description="seed of all random numbers of the run"
+    )
     duration_s: float = Field(gt=0.0, le=LONGEST_RUN_S, description="simulated time of the run, s")
     plant: PlantConfig = Field(
         PlantConfig(), description="the simulated vehicle: integration, start and current"

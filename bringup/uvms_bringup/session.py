@@ -19,6 +19,7 @@ from uvms_analysis.summary import summarise
 from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Claim, Holder
 from uvms_bringup.ending import Ending
+from uvms_bringup.errors import RunError
 from uvms_bringup.folder import claim_folder
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
@@ -210,6 +211,8 @@ def prepare(
     scenario = scenario.for_vehicle(vehicle)
     goal = scenario.goal.build(vehicle, scenario.plant)
     holder = Holder(new_run_id(), os.getpid(), command)
+    if output == "":
+        raise RunError("--output '': give the name of a folder")
     folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
     folder, claim = claim_folder(folder, holder)
     return Session(scenario, vehicle, goal, folder, pace, command, holder, claim, cast or Cast())

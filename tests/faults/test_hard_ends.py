@@ -80,6 +80,15 @@ def test_output_that_cannot_be_written(tmp_path, saw):
     saw("standard output on a full disk", "one line, not exit 0")
 
 
+def test_streams_that_are_closed(tmp_path, saw):
+    program = " ".join(PROGRAM)
+    script = f"{program} simulate hover --duration 0.5 --output out <&- >&- 2>&-"
+    done = subprocess.run(["sh", "-c", script], cwd=tmp_path)
+    assert done.returncode == 0
+    assert (tmp_path / "out" / "summary.json").is_file()
+    saw("standard streams closed", "the run is done and recorded all the same")
+
+
 @pytest.mark.parametrize("command", ["simulate", "report"])
 def test_a_disk_that_is_full_in_the_middle(run, tmp_path, saw, command):
     target = tmp_path / "copy"

@@ -8,8 +8,10 @@ made, so that a mistake in a plug-in is one clear line and not a traceback in th
 
 import inspect
 import traceback
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
+from copy import deepcopy
 from dataclasses import dataclass
+from functools import wraps
 from typing import Any, ClassVar, TypeVar
 
 from pydantic import Field, ValidationInfo, field_validator
@@ -19,6 +21,8 @@ from uvms_core.config import Config, validated
 from uvms_core.errors import ConfigError, PluginError, UvmsError
 from uvms_core.registry import Door
 
+OWN = "uvms_"
+"""What the names of this project's packages begin with."""
 P = TypeVar("P", bound="PluginConfig")
 
 
@@ -125,15 +129,37 @@ def create(config: PluginConfig, first: Any, *others: Any) -> Any:
     label = f"{config.slot.door.what} {config.chosen!r}"
     arguments = (first, config, *others)
     try:
-        return cls(*arguments)
+        return _isolated(cls(*arguments), config.slot.interface)
     except UvmsError:
         raise
-    except Exception as fault:  # a plug-in may raise anything
+    except (Exception, SystemExit) as fault:  # a plug-in may raise anything
         where = traceback.extract_tb(fault.__traceback__)[-1]
         raise PluginError(
             f"{label}: {cls.__name__}({', '.join(map(_kind, arguments))}) failed:"
             f" {type(fault).__name__}: {fault} ({where.filename}:{where.lineno})"
         ) from fault
+
+
+def _isolated(part: Any, interface: Any) -> Any:
+    """A part of somebody else's gets copies of what it is called with.
+
+    In one process all parts share their signals, and the log is written from them: a part that
+    writes into an array would change what the others see and what the log says has happened.
+    """
+    if type(part).__module__.startswith(OWN):
+        return part
+    for name, wanted in vars(interface).items():
+        if inspect.isfunction(wanted) and not name.startswith("_"):
+            setattr(part, name, _with_copies(getattr(part, name)))
+    return part
+
+
+def _with_copies(method: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(method)
+    def call(*arguments: Any, **named: Any) -> Any:
+        return method(*deepcopy(arguments), **deepcopy(named))
+
+    return call
 
 
 def _faults(cls: type, interface: Any) -> Iterator[str]:

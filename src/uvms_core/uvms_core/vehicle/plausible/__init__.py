@@ -8,7 +8,9 @@ and a bound; bounds are ratios wherever they can be, so that they fit vehicles o
 
 from uvms_core.vehicle.plausible.angles import check_angles
 from uvms_core.vehicle.plausible.bodies import check_added_mass, check_bodies
+from uvms_core.vehicle.plausible.drives import check_drives
 from uvms_core.vehicle.plausible.finding import Finding
+from uvms_core.vehicle.plausible.instruments import check_instruments
 from uvms_core.vehicle.plausible.mounting import check_mounting
 from uvms_core.vehicle.plausible.propulsion import check_propulsion
 from uvms_core.vehicle.plausible.stability import check_stability
@@ -24,7 +26,12 @@ _CHECKS = (
     check_propulsion,
     check_mounting,
 )
-_ODDITIES = (check_added_mass, check_stability)  # find warnings only
+_ODDITIES = (
+    check_added_mass,
+    check_stability,
+    check_instruments,
+    check_drives,
+)  # find warnings only
 
 
 def vehicle_findings(vehicle: Vehicle) -> tuple[Finding, ...]:

@@ -1,0 +1,53 @@
+"""Sensors: rates and errors that no instrument has."""
+
+from collections.abc import Iterator
+from operator import attrgetter
+
+from uvms_core.vehicle.plausible.finding import Finding
+from uvms_core.vehicle.vehicle import Vehicle
+
+RATE_HZ = (0.01, 10_000.0)
+"""An underwater fix every other minute; the fastest inertial units."""
+
+WORST = {
+    "imu.roll_pitch_noise_deg": 10.0,
+    "imu.roll_pitch_bias_deg": 10.0,
+    "imu.heading_noise_deg": 45.0,
+    "imu.heading_bias_deg": 45.0,
+    "imu.gyro_noise_deg_s": 10.0,
+    "imu.gyro_bias_deg_s": 10.0,
+    "imu.accelerometer_noise_m_s2": 5.0,
+    "imu.accelerometer_bias_m_s2": 2.0,
+    "dvl.noise_m_s": 1.0,
+    "dvl.scale_error": 0.2,
+    "pressure.noise_pa": 1e5,
+    "pressure.bias_pa": 1e5,
+    "gps.horizontal_noise_m": 100.0,
+    "gps.vertical_noise_m": 200.0,
+    "encoders.resolution_deg": 10.0,
+    "encoders.noise_deg": 10.0,
+    "encoders.rate_noise_deg_s": 30.0,
+}
+"""About ten times what the cheapest instrument of its kind has: a compass beside a motor, a phone's
+inertial unit, ten metres of water for a depth gauge. With more it measures nothing."""
+
+SHORTEST_BIAS_S = 1.0
+"""A bias that changes faster is noise."""
+
+
+def check_instruments(vehicle: Vehicle) -> Iterator[Finding]:
+    """Rates, noise and biases of all sensors; warnings, since a test may be meant."""
+    sensors = vehicle.sensors
+    for name, section in sensors.mounted.items():
+        low, high = RATE_HZ
+        if not low <= section.rate_hz <= high:
+            text = f"{section.rate_hz:g} Hz, outside {low:g} to {high:g} Hz: no instrument has it"
+            yield Finding(f"sensors.{name}.rate_hz", text)
+    for path, worst in WORST.items():
+        value = float(attrgetter(path)(sensors))
+        if value > worst:
+            text = f"{value:g} is more than {worst:g}: with so large an error it measures nothing"
+            yield Finding(f"sensors.{path}", text)
+    if sensors.imu.bias_time_constant_s < SHORTEST_BIAS_S:
+        text = f"{sensors.imu.bias_time_constant_s:g} s, less than {SHORTEST_BIAS_S:g} s: a bias"
+        yield Finding("sensors.imu.bias_time_constant_s", f"{text} that changes so fast is noise")
