@@ -6,7 +6,6 @@ from pydantic import Field
 
 from uvms_core.config import Config
 
-
 Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
 """A place in map_ned, m: the map is a plane, which no vehicle leaves by a thousand kilometres."""
 

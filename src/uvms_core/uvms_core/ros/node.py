@@ -370,6 +370,8 @@ class UvmsNode(Node):
         return response
 
     def _answer_sent(self, _: Any, response: Any) -> Any:
+        if self._status.stamp > 0:  # in a run: what it has counted up to here is worth knowing
+            self.report(self._status.stamp, self._status.level, self._status.message)
         response.success, response.message = True, json.dumps(self._sent)
         return response
 

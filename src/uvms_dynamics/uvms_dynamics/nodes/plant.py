@@ -9,6 +9,8 @@ from pydantic import Field
 from std_srvs.srv import SetBool, Trigger
 
 from uvms_core import diagnostics, topics
+from uvms_core.attitude import attitude_status
+from uvms_core.checks import MAX_AGE_S
 from uvms_core.config import Config
 from uvms_core.errors import StampError
 from uvms_core.ros.endpoints import Endpoint, Publishers
@@ -49,7 +51,7 @@ class PaceConfig(Config):
         180.0, gt=0.0, description="the same at the first tick, when nodes may still compile, s"
     )
     stale_s: float = Field(
-        0.5, gt=0.0, description="age at which realtime takes a command for missing, s"
+        MAX_AGE_S, gt=0.0, description="age at which realtime takes a command for missing, s"
     )
     duration_s: float = Field(0.0, ge=0.0, description="where the plant stops, s; 0: never")
     auto_start: bool = Field(True, description="start by itself as soon as all nodes are there")
@@ -234,7 +236,12 @@ class PlantNode(UvmsNode):
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
         for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
             self.send(topic, signal)
-        self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
+        self.report_each_second(
+            stamp,
+            *attitude_status(truth.odometry.quaternion),
+            lockstep_timeouts=self._timeouts,
+            stale_s=self._pace.stale_s,
+        )
 
     @property
     def _finished(self) -> bool:
