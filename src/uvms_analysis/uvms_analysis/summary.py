@@ -64,7 +64,7 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
     log.load([topic for topic in LOADED if log.has(topic)])
     check = check_log(log)
     outcome = judge(log, check)
-    run, figures = Analysis(log), Figures()
+    run, figures = Analysis(log), Figures(log)
     duration = figures.of("sim_duration_s", lambda: _span(run))
     end = figures.of("end", lambda: _end(log))
     summary = {
@@ -96,7 +96,8 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
 class Figures:
     """Works figures out one by one; where the log does not determine one, it keeps the reason."""
 
-    def __init__(self) -> None:
+    def __init__(self, log: RunLog) -> None:
+        self._prefix = f"log {log.path}: "
         self.missing: dict[str, str] = {}
 
     def of(self, name: str, work: Callable[[], Any], otherwise: Any = None) -> Any:
@@ -104,7 +105,7 @@ class Figures:
         try:
             return determine(work)
         except LogError as fault:
-            self.missing[name] = str(fault)
+            self.missing[name] = str(fault).removeprefix(self._prefix)
         return otherwise
 
 
