@@ -23,7 +23,8 @@ class Scribe(Node):
 
     def __init__(self):
         super().__init__("scribe")
-        self.recorder = Recorder(self, lambda *message: None, (OUT, topics.DIAGNOSTICS))
+        recorded = (*topics.NODES[ROLE].outputs, topics.DIAGNOSTICS)
+        self.recorder = Recorder(self, lambda *message: None, recorded)
         self.losses = Losses(self, self.recorder, [ROLE])
 
     @property
