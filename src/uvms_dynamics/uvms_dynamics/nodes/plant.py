@@ -15,9 +15,10 @@ from uvms_core.config import Config
 from uvms_core.errors import StampError
 from uvms_core.ros.endpoints import Endpoint, Publishers
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import UvmsNode
+from uvms_core.ros.node import DIAGNOSTICS_PERIOD, UvmsNode
 from uvms_core.ros.roll_call import SEPARATOR, RollCall, unread
 from uvms_core.signals import (
+    Array,
     JointCommand,
     ThrusterCommand,
     to_nanoseconds,
@@ -98,6 +99,7 @@ class PlantNode(UvmsNode):
         self._look = time.monotonic() + LOOK
         self._recorded = 0
         self._held = False
+        self._tilt_reported = -DIAGNOSTICS_PERIOD
         if self.lockstep and self._pace.recorder_window:
             self.listen(topics.RECORDED, self._take_recorded)
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
@@ -236,12 +238,22 @@ class PlantNode(UvmsNode):
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
         for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
             self.send(topic, signal)
-        self.report_each_second(
-            stamp,
-            *attitude_status(truth.odometry.quaternion),
-            lockstep_timeouts=self._timeouts,
-            stale_s=self._pace.stale_s,
-        )
+        self._warn_of_attitude(stamp, truth.odometry.quaternion)
+        self.report_each_second(stamp, **self._values)
+
+    def _warn_of_attitude(self, stamp: int, quaternion: Array) -> None:
+        """At most once a second, whatever else the plant has to report."""
+        if 0 <= stamp - self._tilt_reported < DIAGNOSTICS_PERIOD:
+            return
+        level, text = attitude_status(quaternion)
+        if level != diagnostics.OK:
+            self._tilt_reported = stamp
+            self.report(stamp, level, text, **self._values)
+
+    @property
+    def _values(self) -> dict[str, Any]:
+        """What the plant says about its time, besides what all nodes count."""
+        return {"lockstep_timeouts": self._timeouts, "stale_s": self._pace.stale_s}
 
     @property
     def _finished(self) -> bool:
