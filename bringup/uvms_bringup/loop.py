@@ -2,7 +2,7 @@
 
 import gc
 import time
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from functools import cache
 from typing import Any
@@ -12,6 +12,8 @@ import numpy as np
 from uvms_bringup.scenario import Scenario
 from uvms_control.parts import AllocatorPart, ControllerPart
 from uvms_core import topics
+from uvms_core.attitude import attitude_status
+from uvms_core.diagnostics import Status
 from uvms_core.part import InProcess, Output, Part
 from uvms_core.plausibility import Plausibility
 from uvms_core.signals import (
@@ -137,6 +139,12 @@ class Loop:
                 outputs += own
         plan = self.parts[topics.MOTION_PLANNER].plan if topics.MOTION_PLANNER in step_ms else None  # type: ignore[attr-defined]
         return LoopTick(stamp, sensors, truth, outputs, step_ms, plan)
+
+    def final_status(self, tick: LoopTick) -> Iterator[Status]:
+        """What the plant and every part have to say at the last tick, as nodes do each second."""
+        attitude = attitude_status(tick.truth.odometry.quaternion)
+        yield Status(tick.stamp, topics.PLANT, *attitude, {"lockstep_timeouts": 0})
+        yield from self._process.final_status(tick.stamp)
 
     def advance(self, tick: LoopTick) -> None:
         """Let the plant move to its next tick under the commands of this one."""

@@ -40,19 +40,25 @@ def simulate(
     if log is not None:
         write_description(log, vehicle)
     succeeded = True
-    while True:
-        tick = loop.tick()
-        if log is not None:
-            write_tick(log, tick, frames)
-        observe(tick)
-        progress(tick.stamp, "")
-        if tick.plan is not None and tick.plan.finished is not None:
-            succeeded = tick.plan.finished.success
-        if tick.stamp >= end:
-            return succeeded
-        if tick.stamp == 0 and goal is not None:
-            loop.planner.accept(goal)
-        loop.advance(tick)
+    tick: LoopTick | None = None
+    try:
+        while True:
+            tick = loop.tick()
+            if log is not None:
+                write_tick(log, tick, frames)
+            observe(tick)
+            progress(tick.stamp, "")
+            if tick.plan is not None and tick.plan.finished is not None:
+                succeeded = tick.plan.finished.success
+            if tick.stamp >= end:
+                return succeeded
+            if tick.stamp == 0 and goal is not None:
+                loop.planner.accept(goal)
+            loop.advance(tick)
+    finally:  # what was counted is known whatever ended the run
+        if log is not None and tick is not None:
+            for status in loop.final_status(tick):
+                log.write(topics.DIAGNOSTICS, status)
 
 
 def write_description(log: SignalWriter, vehicle: Vehicle) -> None:

@@ -14,7 +14,7 @@ MAXIMA = (
 
 
 def summary_text(summary: Mapping[str, Any]) -> str:
-    """Outcome with its reasons, duration, and root mean square and greatest value of each error."""
+    """Outcome with its reasons, duration, and the errors, and incidents."""
     lines = [f"outcome: {summary['outcome']}"]
     lines += [f"  {reason}" for reason in summary.get("reasons") or ()]
     lines.append(_duration(summary))
@@ -23,10 +23,13 @@ def summary_text(summary: Mapping[str, Any]) -> str:
         if values.get("max") is not None:
             rms, most = factor * values["rms"], factor * values["max"]
             lines.append(f"{words}: {rms:.3g} {unit} rms, {most:.3g} {unit} at most")
+    lines += [f"incident: {text}" for text in summary.get("incidents") or ()]
     return "\n".join(lines)
 
 
 def _duration(summary: Mapping[str, Any]) -> str:
-    text = f"simulated: {summary['sim_duration_s']:.2f} s in {summary['wall_s']:.1f} s"
+    if (duration := summary["sim_duration_s"]) is None:
+        return f"simulated: unknown, since {summary['missing']['sim_duration_s']}"
+    text = f"simulated: {duration:.2f} s in {summary['wall_s']:.1f} s"
     factor = summary.get("real_time_factor")
     return text + (f", {factor:.1f} times real time" if factor else "")

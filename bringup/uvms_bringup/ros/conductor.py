@@ -275,8 +275,13 @@ class Conductor(Node):
 
         Time is paused first, so that nothing is on its way when they count.
         """
-        self._pause.call_async(SetBool.Request(data=True))
+        paused = self._pause.call_async(SetBool.Request(data=True))
         deadline = time.monotonic() + COUNT_PATIENCE_S
+        while not paused.done() and time.monotonic() < deadline - 0.5 * COUNT_PATIENCE_S:
+            spinner.serve(0.05)
+        settled = time.monotonic() + SETTLE_S  # for the answers to the last tick
+        while self._arrival is None and time.monotonic() < settled:
+            spinner.serve(0.05)
         while not self.losses.ended() and time.monotonic() < deadline:
             spinner.serve(0.05)
         return self.losses.silent()

@@ -166,8 +166,10 @@ class GraphRun:
         """Notice deaths and intruders; raise where the run cannot go on."""
         for role, how in company.replace_the_dead():
             conductor.census.forgive(role)
+            conductor.losses.restart(role)
             when = to_seconds(conductor.stamp)
             self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
+        conductor.losses.look()
         if conductor.acknowledgement is not None:
             conductor.acknowledgement.look_after()
         if conductor.recorder.set_back is not None:

@@ -32,16 +32,29 @@ class Target:
 
 
 def at_common_stamps(one: Series, two: Series) -> tuple[Series, Series]:
-    """Two series at their common stamps."""
+    """Two series at their common stamps.
+
+    Raises:
+        LogError: they have none.
+    """
     _, first, second = np.intersect1d(one.stamps, two.stamps, return_indices=True)
+    if not len(first):
+        raise LogError(f"{one.name} and {two.name} have no stamp in common")
     return one.take(first), two.take(second)
 
 
 class Analysis:
-    """A log and the quantities derived from it, each computed on first use."""
+    """A log and the quantities derived from it, each computed on first use.
 
-    def __init__(self, log: RunLog) -> None:
+    Args:
+        log: of the run.
+        estimated: take the estimated odometry and the encoders for the truth, where no true ones
+            are recorded.
+    """
+
+    def __init__(self, log: RunLog, estimated: bool = False) -> None:
         self.log = log
+        self.estimated = estimated
 
     @property
     def vehicle(self) -> Vehicle:
@@ -57,8 +70,11 @@ class Analysis:
 
     @cached_property
     def _true(self) -> tuple[Series, Series]:
-        odometry = self.log.series(topics.TRUE_ODOMETRY)
-        return at_common_stamps(odometry, self.log.series(topics.TRUE_JOINT_STATES))
+        both = (topics.TRUE_ODOMETRY, topics.TRUE_JOINT_STATES)
+        if self.estimated:
+            both = (topics.ODOMETRY, topics.JOINT_STATES)
+        odometry, joints = map(self.log.series, both)
+        return at_common_stamps(odometry, joints)
 
     @property
     def truth(self) -> Series:
@@ -104,7 +120,8 @@ class Analysis:
     def estimated_end_effector(self) -> Series:
         """End effector by estimated pose and encoders: `position` (k, 3) m in map_ned."""
         odometry, joints = at_common_stamps(self.estimate, self.log.series(topics.JOINT_STATES))
-        return Series(odometry.stamps, {"position": self._tool(odometry, joints)})
+        columns = {"position": self._tool(odometry, joints)}
+        return Series(odometry.stamps, columns, "the estimated end effector")
 
     def _tool(self, odometry: Series, joints: Series) -> Array:
         if joints.position.shape[1:] != (self.vehicle.n_joints,):
@@ -132,7 +149,8 @@ class Analysis:
         )
         # Segments share their end points: the later one is kept.
         last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
-        return Series(stamps[last], {name: column[last] for name, column in columns.items()})
+        kept = {name: column[last] for name, column in columns.items()}
+        return Series(stamps[last], kept, topics.REFERENCE.name)
 
     @property
     def path(self) -> PathGoal | None:
@@ -189,7 +207,8 @@ class Analysis:
     @cached_property
     def tracking_error(self) -> Array:
         """Estimated end effector minus target, (k, 3) m: the error that the loop itself can see."""
-        wanted = Series(self.truth.stamps[self.target.index], {"position": self.target.position})
+        columns = {"position": self.target.position}
+        wanted = Series(self.truth.stamps[self.target.index], columns, f"the {self.target.kind}")
         estimated, wanted = at_common_stamps(self.estimated_end_effector, wanted)
         return estimated.position - wanted.position
 
@@ -220,8 +239,8 @@ class Analysis:
 
     @cached_property
     def lockstep_timeouts(self) -> int:
-        """Number of times the plant continued without a command."""
-        if topics.DIAGNOSTICS.name in self.log.unusable:
-            return 0
+        """Number of times the plant continued without a command; LogError where nobody says."""
         values = [status.number("lockstep_timeouts") for status in self.log.statuses(topics.PLANT)]
-        return int(max((value for value in values if np.isfinite(value)), default=0))
+        if not (finite := [value for value in values if np.isfinite(value)]):
+            raise LogError(f"log {self.log.path}: its plant does not report them")
+        return int(max(finite))

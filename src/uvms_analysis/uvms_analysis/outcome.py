@@ -2,15 +2,17 @@
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from functools import partial
 from typing import Literal
 
-from uvms_analysis import limits
+from uvms_analysis import counters, limits
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import Check, check_log
 from uvms_analysis.check.finding import END, FILE, Finding
-from uvms_analysis.errors import LogError
+from uvms_analysis.errors import LogError, determine
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
+from uvms_core import topics
 
 Word = Literal["completed", "given up", "aborted", "invalid"]
 COMPLETED: Word = "completed"
@@ -46,6 +48,18 @@ WORST_FIRST: tuple[Word, ...] = (INVALID, ABORTED, GIVEN_UP)
 NO_RUN = "the log is not that of a run"
 
 
+TRUTH, ESTIMATES = "ground truth", "estimates"
+
+
+def judged_by(log: RunLog) -> str:
+    """What the limits are judged by: estimates where the log has no true odometry at all.
+
+    A plant that is not ours may have none to publish. Where ours did and it is missing, that is a
+    fault of its own.
+    """
+    return TRUTH if log.counts.get(log.full_name(topics.TRUE_ODOMETRY)) else ESTIMATES
+
+
 def judge(log: RunLog, check: Check | None = None) -> Outcome:
     """The outcome of the run in a log: the worst that was found, and all reasons, worst first.
 
@@ -53,21 +67,22 @@ def judge(log: RunLog, check: Check | None = None) -> Outcome:
         check: of this log, where it has been made already.
     """
     check = check or check_log(log)
+    if not log.run and _end(log) is None:
+        return Outcome(INVALID, (NO_RUN, *map(_reason, check.faults)))
+    run = Analysis(log, estimated=judged_by(log) == ESTIMATES)
+    broken, unknown = _limits(run)
+    rubbish, inputs = _counted(log)
+    aborted = _aborted(log)
     reasons: dict[Word, list[str]] = {
-        INVALID: _invalid(log, check),
-        ABORTED: _aborted(log),
-        GIVEN_UP: list(_given_up(log)),
+        # A run that was stopped may have ended before there was anything to judge.
+        INVALID: [*map(_reason, check.faults), *inputs, *([] if aborted else unknown)],
+        ABORTED: aborted,
+        GIVEN_UP: [*_goal(log, run), *broken, *rubbish],
     }
     for word in WORST_FIRST:
         if reasons[word]:
             return Outcome(word, tuple(text for each in WORST_FIRST for text in reasons[each]))
     return Outcome(COMPLETED)
-
-
-def _invalid(log: RunLog, check: Check) -> list[str]:
-    if not log.run and _end(log) is None:
-        return [NO_RUN, *map(_reason, check.faults)]
-    return [_reason(finding) for finding in check.faults]
 
 
 def _reason(finding: Finding) -> str:
@@ -87,19 +102,35 @@ def _end(log: RunLog) -> RunEnd | None:
         return None
 
 
-def _given_up(log: RunLog) -> Iterator[str]:
-    """Where the task was not done, or a limit was not kept; a measure that fails is no measure."""
-    run = Analysis(log)
-    yield from _goal(log, run)
-    measures: tuple[Callable[[Analysis], str], ...] = (limits.arm,)
-    if limits.is_controlled(log):
-        measures = (limits.attitude, limits.saturation, limits.end_effector)
-    for measure in measures:
+def _limits(run: Analysis) -> tuple[list[str], list[str]]:
+    """Why limits were not kept, and why others cannot be judged."""
+    measures: dict[str, Callable[[Analysis], str]] = {"joints": limits.arm}
+    if limits.is_controlled(run.log):
+        measures = {
+            "attitude": limits.attitude,
+            "thrusters": limits.saturation,
+            "end effector": limits.end_effector,
+            "vehicle": limits.vehicle,
+        }
+    broken, unknown = [], []
+    for name, measure in measures.items():
         try:
-            if text := measure(run):
-                yield text
-        except LogError:  # what is missing is a finding of the check
-            continue
+            broken.append(determine(partial(measure, run)))
+        except LogError as fault:
+            unknown.append(f"its limits cannot be judged ({name}): {fault}")
+    return list(filter(None, broken)), unknown
+
+
+def _counted(log: RunLog) -> tuple[list[str], list[str]]:
+    """What the nodes' counters say: of parts that made rubbish, and of inputs that were lost."""
+    try:
+        counts = counters.node_counters(log)
+    except LogError:  # a finding of the check: what is there under this name is something else
+        return [], []
+    if not counts:
+        return [], [f"no node says on {topics.DIAGNOSTICS.name} what it has counted"]
+    ticks = log.counts.get(log.full_name(topics.CLOCK), 0)
+    return list(counters.made_rubbish(counts)), list(counters.lost_inputs(counts, ticks))
 
 
 def _goal(log: RunLog, run: Analysis) -> Iterator[str]:

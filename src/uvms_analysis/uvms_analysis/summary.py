@@ -8,16 +8,16 @@ import numpy as np
 
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import check_log
-from uvms_analysis.errors import LogError
+from uvms_analysis.counters import node_counters
+from uvms_analysis.errors import LogError, determine
 from uvms_analysis.log.read import RunLog
-from uvms_analysis.outcome import judge
+from uvms_analysis.log.run_end import RunEnd
+from uvms_analysis.outcome import judge, judged_by
 from uvms_core import topics
 from uvms_core.signals import Array
+from uvms_core.vehicle import vehicle_warnings
 
 Metrics = dict[str, float | None]
-
-NOT_THESE = (ValueError, IndexError, KeyError, TypeError, ArithmeticError)
-"""Raised by the mathematics on the values of a foreign log; LogError where the log is damaged."""
 
 LOADED = (
     topics.TRUE_ODOMETRY,
@@ -47,7 +47,7 @@ def percentiles(values: Array) -> Metrics:
     return {"p50": float(np.percentile(values, 50)), "p99": float(np.percentile(values, 99))}
 
 
-def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
+def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, Any]:
     """The summary of a run; metrics that the log does not determine are None.
 
     `missing` says why they are; the figures of an invalid run stay, and `outcome` says what they
@@ -55,7 +55,7 @@ def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
 
     Args:
         log: a log or its file.
-        wall_s: wall time that the run took, s.
+        wall_s: wall time that the run took, s; None where nobody knows.
 
     Raises:
         LogError: the file cannot be read.
@@ -64,24 +64,30 @@ def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
     log.load([topic for topic in LOADED if log.has(topic)])
     check = check_log(log)
     outcome = judge(log, check)
-    run, figures = Analysis(log), Figures()
-    duration = figures.of("sim_duration_s", lambda: _span(run)) or 0.0
-    seed, end = figures.of("seed", lambda: _seed(log)), figures.of("goal", lambda: log.end)
+    run, figures = Analysis(log), Figures(log)
+    duration = figures.of("sim_duration_s", lambda: _span(run))
+    end = figures.of("end", lambda: _end(log))
     summary = {
-        "scenario": log.run.get("scenario", ""),
-        "seed": seed,
+        "scenario": figures.of("scenario", lambda: _about(log, "scenario")),
+        "seed": figures.of("seed", lambda: _seed(log)),
         "outcome": outcome.word,
         "reasons": list(outcome.reasons),
         "completed": outcome.completed,
+        "judged_by": judged_by(log),
         "goal": None if end is None else end.goal,
         "sim_duration_s": duration,
         "wall_s": wall_s,
-        "real_time_factor": duration / wall_s if wall_s > 0.0 else None,
-        "lockstep_timeouts": run.lockstep_timeouts,
+        "real_time_factor": figures.of("real_time_factor", lambda: _factor(duration, wall_s)),
+        "lockstep_timeouts": figures.of("lockstep_timeouts", lambda: run.lockstep_timeouts),
     }
     summary |= _precision(run, figures) | _effort(run, figures)
     summary["log_fault"] = log.fault or None
     summary["rejected_messages"] = {name: len(items) for name, items in log.rejected.items()}
+    summary["incidents"] = [] if end is None else list(end.incidents)
+    summary["node_counters"] = figures.of("node_counters", lambda: node_counters(log))
+    summary["vehicle_warnings"] = figures.of(
+        "vehicle_warnings", lambda: list(map(str, vehicle_warnings(log.vehicle)))
+    )
     summary["check"] = check.summary()
     summary["missing"] = figures.missing
     return summary
@@ -90,17 +96,16 @@ def summarise(log: str | Path | RunLog, *, wall_s: float) -> dict[str, Any]:
 class Figures:
     """Works figures out one by one; where the log does not determine one, it keeps the reason."""
 
-    def __init__(self) -> None:
+    def __init__(self, log: RunLog) -> None:
+        self._prefix = f"log {log.path}: "
         self.missing: dict[str, str] = {}
 
     def of(self, name: str, work: Callable[[], Any], otherwise: Any = None) -> Any:
         """What `work` gives, or `otherwise`."""
         try:
-            return work()
+            return determine(work)
         except LogError as fault:
-            self.missing[name] = str(fault)
-        except NOT_THESE as fault:
-            self.missing[name] = f"the log's values do not fit together: {fault!r}"
+            self.missing[name] = str(fault).removeprefix(self._prefix)
         return otherwise
 
 
@@ -108,11 +113,31 @@ def _span(run: Analysis) -> float:
     return float(run.truth.time[-1] - run.truth.time[0])
 
 
+def _factor(duration: float | None, wall_s: float | None) -> float:
+    """Simulated by wall time."""
+    if not wall_s or duration is None:
+        raise LogError("the duration or the wall time is not known")
+    return duration / wall_s
+
+
+def _end(log: RunLog) -> RunEnd:
+    if log.end is None:
+        raise LogError(f"log {log.path}: has no record of the run's end")
+    return log.end
+
+
+def _about(log: RunLog, key: str) -> str:
+    """What the log says about the run."""
+    if key not in log.run:
+        raise LogError(f"log {log.path}: has no record of the run's {key}")
+    return log.run[key]
+
+
 def _seed(log: RunLog) -> int:
+    seed = _about(log, "seed")
     try:
-        return int(log.run.get("seed", 0))
+        return int(seed)
     except ValueError:
-        seed = log.run["seed"]
         raise LogError(f"log {log.path}: the seed {seed!r} is not a number") from None
 
 

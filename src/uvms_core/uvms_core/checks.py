@@ -20,6 +20,10 @@ QUATERNION_TOLERANCE = 1e-3
 """A quaternion from outside may be off unit length by this much; a zero one is invalid."""
 MAX_AGE_S = 0.5
 """Oldest joint state or disturbance that control works with, s: a planner step."""
+ATTITUDE_DEG = 30.0
+"""Roll or pitch beyond which a controlled vehicle counts as lost. The planner lets it take up 5
+degrees, its law saturates at 9 (`control.vehicle.error_scale`), and the worst that it still comes
+back from in the scenarios, without the observer, is 15."""
 
 _MARK = "_checked"
 _set = object.__setattr__

@@ -8,17 +8,12 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from typing import Any
 
-from uvms_core.checks import MAX_AGE_S
 from uvms_core.errors import ImplausibleError, StampError, UvmsError
 from uvms_core.plausibility import Plausibility
-from uvms_core.signals import to_nanoseconds
-from uvms_core.tick_gate import Tick, TickGate
+from uvms_core.tick_gate import KEEP, Tick, TickGate
 from uvms_core.timeline import Item, Judged, Jump, Timeline
 from uvms_core.topic import Topic
 
-BRIDGED = to_nanoseconds(MAX_AGE_S)
-"""Longest gap that a part goes on after as if nothing had been, ns; after a longer one it begins
-anew: its derivatives, integrals and filters would take the gap for one long step."""
 UNREADABLE, IMPLAUSIBLE, JUMPS, RESETS = "unreadable", "implausible", "jumps_taken", "resets"
 
 
@@ -99,7 +94,7 @@ class Intake:
         return self.gate.push(item.name, item.stamp, item.content)
 
     def _jump(self, jump: Jump) -> None:
-        if not jump.is_back and jump.after - jump.before <= BRIDGED:
+        if not jump.is_back and jump.after - jump.before <= KEEP:
             return
         self._counts[RESETS] += 1
         self.news.append(f"{jump}; beginning anew")

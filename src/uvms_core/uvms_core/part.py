@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from uvms_core import topics
-from uvms_core.diagnostics import ERROR, Status
+from uvms_core.diagnostics import ERROR, OK, Status
 from uvms_core.errors import PlantDiverged, PluginError, SignalError, UnsafeOutputError, UvmsError
 from uvms_core.plausibility import Plausibility
 from uvms_core.signals import to_seconds
@@ -109,10 +109,29 @@ class InProcess:
             for topic, rule in part.inputs.items():
                 self._rules.setdefault(topic.name, []).append(rule)
         self._faults: list[str] = []
+        self._readers: dict[str, list[str]] = {
+            name: [role for role in self.order if name in {t.name for t in parts[role].inputs}]
+            for name in self._rules
+        }
+        self._counts: dict[str, dict[str, int]] = {
+            role: {"refused": 0, "unsafe_outputs": 0} for role in self.order
+        }
         self.refused = 0
         """Signals from outside that were not used."""
-        self.unsafe = 0
+
+    @property
+    def unsafe(self) -> int:
         """Ticks at which a part made rubbish and its safe output was used instead."""
+        return sum(counts["unsafe_outputs"] for counts in self._counts.values())
+
+    def final_status(self, stamp: int) -> Iterator[Status]:
+        """What each part has counted, as its node would say it at the end of a run."""
+        for role, part, _ in self._parts:
+            trouble = part.trouble()
+            level = OK if trouble is None else ERROR
+            yield Status(
+                stamp, role, level, trouble or "ok", {**self._counts[role], **part.status()}
+            )
 
     def admit_all(self, outputs: Iterable[Output]) -> None:
         """Hand over signals from outside, as `admit` does."""
@@ -138,9 +157,14 @@ class InProcess:
                 self._plausibility.admit(topic, signal)
         except UvmsError as fault:
             self.refused += 1
-            self._faults.append(str(fault))
+            self._refuse(self._readers[topic.name], fault)
         else:
             self.deliver(topic, signal)
+
+    def _refuse(self, roles: Iterable[str], fault: UvmsError) -> None:
+        self._faults.append(str(fault))
+        for role in roles:
+            self._counts[role]["refused"] += 1
 
     def deliver(self, topic: Topic, signal: Any) -> None:
         """Hand a signal to every part that reads its topic."""
@@ -168,16 +192,17 @@ class InProcess:
             return run_step(role, part, tick)
         outputs, fault = safe_step(role, part, tick, self._plausibility)
         if isinstance(fault, UnsafeOutputError):
-            self.unsafe += 1
+            self._counts[role]["unsafe_outputs"] += 1
             self._faults.append(str(fault))
         elif fault is not None:
             raise fault
+        for sample in part.take_faults():
+            self._refuse([role], sample)
         return outputs
 
     def _diagnosis(self, role: str, stamp: int) -> Output:
         text, self._faults = "; ".join(self._faults), []
-        counts = {"refused": self.refused, "unsafe_outputs": self.unsafe}
-        return topics.DIAGNOSTICS, Status(stamp, role, ERROR, text, counts)
+        return topics.DIAGNOSTICS, Status(stamp, role, ERROR, text, dict(self._counts[role]))
 
 
 def safe_step(

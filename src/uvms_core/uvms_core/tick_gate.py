@@ -25,7 +25,9 @@ DEPTH = 256
 """Samples an input keeps while it waits: 2.5 s of a 100 Hz sensor."""
 KEEP = to_nanoseconds(MAX_AGE_S)
 """How long the last good value stands in for those that cannot be used, ns: as long as control
-works with any old state."""
+works with any old state. It is also the longest gap that a part goes on after as if nothing had
+been; after a longer one it begins anew: its derivatives, integrals and filters would take the gap
+for one long step."""
 _STAMP = itemgetter(0)
 
 

@@ -1,5 +1,6 @@
 """Which commands the plant used: none too late, none left unused, and never its safe state."""
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
@@ -12,6 +13,7 @@ from uvms_analysis.check.finding import COMMANDS, Finding
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import Series
 from uvms_core import topics
+from uvms_core.checks import MAX_AGE_S
 from uvms_core.signals import NANOSECONDS
 from uvms_core.topic import Topic
 
@@ -23,8 +25,9 @@ LATE_SHARE = 0.05
 """In real time, the share of ticks under late commands, and of commands that were never used, up
 to which the run is still the one that was meant."""
 
-START_S = 0.5
-"""In real time the plant may hold its safe state so long at the start, s: its own patience."""
+PATIENCE = "stale_s"
+"""Key in the plant's diagnostics: how long it waits for a command in real time, s. It may hold its
+safe state so long at the start. A plant that does not say it counts as one with the default."""
 
 
 @dataclass(frozen=True)
@@ -85,7 +88,7 @@ def _used(
 
 
 def _safe(contents: Contents, used: Used) -> Iterator[Finding]:
-    start = 0.0 if contents.is_lockstep else START_S * NANOSECONDS
+    start = 0.0 if contents.is_lockstep else _patience_s(contents) * NANOSECONDS
     after = used.safe[used.safe > start]
     if len(after):
         text = (
@@ -93,6 +96,14 @@ def _safe(contents: Contents, used: Used) -> Iterator[Finding]:
             f" {after[0] / NANOSECONDS:.3f} s: no command came in time"
         )
         yield Finding(COMMANDS, text, used.topic)
+
+
+def _patience_s(contents: Contents) -> float:
+    try:
+        said = [status.number(PATIENCE) for status in contents.log.statuses(topics.PLANT)]
+    except LogError:  # a finding of its own: `check.content`
+        said = []
+    return max((value for value in said if math.isfinite(value)), default=MAX_AGE_S)
 
 
 def _late(contents: Contents, used: Used) -> Iterator[Finding]:

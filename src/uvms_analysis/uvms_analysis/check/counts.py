@@ -5,6 +5,7 @@ from collections.abc import Iterator
 from uvms_analysis.check.contents import Contents
 from uvms_analysis.check.expected import Rhythms
 from uvms_analysis.check.finding import COUNT, Finding
+from uvms_core import topics
 
 UNANSWERED_SHARE = 0.05
 """In real time a node may miss ticks. Up to this share the loop is still the one that was meant:
@@ -12,6 +13,18 @@ a controller at 20 Hz that loses every twentieth sample has the phase lag of one
 
 LAST_TICK = 1
 """Messages that may be missing where a run was stopped in the middle of a tick, or in real time."""
+
+
+NEEDED = (
+    topics.ODOMETRY,
+    topics.JOINT_STATES,
+    topics.REFERENCE,
+    topics.ALLOCATION,
+    topics.THRUSTER_COMMAND,
+    topics.JOINT_COMMAND,
+)
+"""What the outcome of a run is judged by, besides what only a simulated plant can say."""
+OF_THE_PLANT = (topics.TRUE_ODOMETRY, topics.TRUE_JOINT_STATES, topics.APPLIED_THRUST)
 
 
 def check_counts(contents: Contents, rhythms: Rhythms | None) -> Iterator[Finding]:
@@ -48,7 +61,7 @@ def _against_sent(contents: Contents, name: str, sent: int) -> Iterator[Finding]
         text = f"{sent - received} of {sent} messages that were sent are not in the log"
         yield Finding(COUNT, text, name)
     elif received > sent:
-        text = f"{received} messages are in the log, but {sent} were sent"
+        text = f"{received} messages are in the log, but its nodes sent {sent}: others took part"
         yield Finding(COUNT, text, name)
 
 
@@ -65,7 +78,8 @@ def _against_rate(
     stopped = contents.end is None or bool(contents.end.stopped_by)
     text = f"{missing} of {expected} messages are missing"
     if received == 0 and sent and name not in sent:
-        yield Finding(COUNT, "no message; no node of the run published it", name, serious=False)
+        text = "no message; no node of the run published it"
+        yield Finding(COUNT, text, name, serious=_is_needed(contents, name, sent))
     elif missing <= LAST_TICK and (stopped or not contents.is_lockstep):
         yield Finding(COUNT, f"{text}: of the last tick", name, serious=False)
     elif sent.get(name) == received and not contents.is_lockstep:
@@ -74,3 +88,14 @@ def _against_rate(
         yield Finding(COUNT, text, name, serious=serious)
     else:
         yield Finding(COUNT, text, name)
+
+
+def _is_needed(contents: Contents, name: str, sent: dict[str, int]) -> bool:
+    """Whether nothing can be said about a run without this topic.
+
+    A plant that is not ours, and gives no counts, may have no truth to publish: the limits are
+    judged by the estimates then.
+    """
+    foreign_plant = topics.CLOCK.name not in sent
+    needed = NEEDED if foreign_plant else (*NEEDED, *OF_THE_PLANT)
+    return name in map(contents.log.full_name, needed)

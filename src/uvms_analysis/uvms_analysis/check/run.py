@@ -52,6 +52,11 @@ class Check:
         return [finding for finding in self.findings if finding.serious]
 
     @property
+    def notes(self) -> list[Finding]:
+        """The others."""
+        return [finding for finding in self.findings if not finding.serious]
+
+    @property
     def complete(self) -> bool:
         """Whether there is no serious finding."""
         return not self.faults
@@ -62,13 +67,18 @@ class Check:
         return COMPLETE if self.complete else NOT_COMPLETE
 
     def summary(self) -> dict[str, Any]:
-        """For `summary.json`: the verdict, the reasons, and the topics that have wrong counts."""
+        """For `summary.json`: verdict, reasons, notes, and the topics that have wrong counts."""
         wrong = {
             row.topic: {"expected": row.expected, "received": row.received}
             for row in self.rows
             if row.expected is not None and row.expected != row.received
         }
-        return {"verdict": self.verdict, "faults": list(map(str, self.faults)), "counts": wrong}
+        return {
+            "verdict": self.verdict,
+            "faults": list(map(str, self.faults)),
+            "notes": list(map(str, self.notes)),
+            "counts": wrong,
+        }
 
     def to_json(self) -> dict[str, Any]:
         """Everything as plain data."""

@@ -18,14 +18,15 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Draw the figures and write the page, or draw the picture; print where it is."""
+    from uvms_analysis.errors import determine
     from uvms_analysis.log.locate import log_path
     from uvms_analysis.report import draw_scene, report
 
     log = log_path(options.log)
     if options.picture is not None:
-        print(draw_scene(log, options.picture))
+        print(determine(lambda: draw_scene(log, options.picture)))
     else:
-        print(report(log, options.output))
+        print(determine(lambda: report(log, options.output)))
     return 0
 
 

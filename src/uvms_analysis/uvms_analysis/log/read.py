@@ -31,9 +31,15 @@ _UNIQUE_NAMES = (topics.TRUE_ODOMETRY, topics.THRUSTER_COMMAND, topics.WRENCH_CO
 
 
 class Series:
-    """Signals of one topic over time: `stamps` (k,) in ns, `time` in s, an array per field."""
+    """Signals of one topic over time: `stamps` (k,) in ns, `time` in s, an array per field.
 
-    def __init__(self, stamps: np.ndarray, columns: dict[str, np.ndarray]) -> None:
+    `name` says in messages what they are.
+    """
+
+    def __init__(
+        self, stamps: np.ndarray, columns: dict[str, np.ndarray], name: str = "a series"
+    ) -> None:
+        self.name = name
         self.stamps = stamps
         self.time: Array = stamps / NANOSECONDS
         self._columns = columns
@@ -49,7 +55,8 @@ class Series:
 
     def take(self, index: np.ndarray) -> "Series":
         """The series at these indices."""
-        return Series(self.stamps[index], {key: of[index] for key, of in self._columns.items()})
+        columns = {key: of[index] for key, of in self._columns.items()}
+        return Series(self.stamps[index], columns, self.name)
 
 
 class RunLog:
@@ -265,7 +272,7 @@ class RunLog:
         """
         signals = self.signals(topic)
         if signals and isinstance(signals[0], int):  # a clock
-            return Series(np.array(signals, dtype=np.int64), {})
+            return Series(np.array(signals, dtype=np.int64), {}, topic.name)
         if not signals or not is_dataclass(signals[0]):
             raise LogError(f"log {self.path}: has no valid message of {topic.name}")
         names = [field.name for field in fields(signals[0]) if field.name != "stamp"]
@@ -275,7 +282,8 @@ class RunLog:
             raise LogError(
                 f"log {self.path}: the messages of {topic.name} differ in size"
             ) from fault
-        return Series(np.array([one.stamp for one in signals], dtype=np.int64), columns)
+        stamps = np.array([one.stamp for one in signals], dtype=np.int64)
+        return Series(stamps, columns, topic.name)
 
     def statuses(self, node: str) -> list[Status]:
         """Diagnostics of one node; names may have a namespace, or a title after a colon."""

@@ -26,7 +26,10 @@ class RunEnd:
         stopped_by: empty where the run reached its end by itself; else `SIGINT`, `SIGTERM`, or the
             text of the error that ended it.
         goal: `none`, `running`, `succeeded`, `aborted`, `canceled` or `rejected`.
-        sent: messages that the nodes say they sent, by full topic name; empty where nobody counted.
+        sent: messages that should be in the log by what the nodes say they sent, by full topic
+            name, whatever was received; those of before the run, and of nodes that died, are taken
+            as they were received. Fewer in the log are lost, more come from somebody else. Empty
+            where nobody counted.
         lost: of these, how many the recorder never got, by full topic name; without zeros.
         foreign: endpoints that did not belong to the run, in words; empty: there were none.
         incidents: what else happened, in words: a node that died and was started again, say.

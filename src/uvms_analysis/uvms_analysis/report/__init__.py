@@ -2,17 +2,18 @@
 
 import json
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 from matplotlib.figure import Figure
 
 from uvms_analysis.analysis import Analysis
-from uvms_analysis.errors import LogError
+from uvms_analysis.errors import LogError, determine
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import force_figures, motion_figures, style
 from uvms_analysis.report.page import Picture, write_page
 from uvms_analysis.report.scene import draw_scene, scene
-from uvms_analysis.summary import NOT_THESE, summarise
+from uvms_analysis.summary import summarise
 
 __all__ = ["FIGURES", "draw_scene", "report"]
 
@@ -63,13 +64,13 @@ def report(log: str | Path, output: str | Path | None = None) -> Path:
     return write_page(folder / "report.html", run, summary, pictures)
 
 
-def _wall_s(run: RunLog) -> float:
-    """Wall time, which no log knows, from the summary beside it if there is one."""
+def _wall_s(run: RunLog) -> float | None:
+    """Wall time, which no log knows, from the summary beside it; None where there is none."""
     beside = run.path.parent / "summary.json"
     try:
         return float(json.loads(beside.read_text(encoding="utf-8"))["wall_s"])
     except (OSError, ValueError, KeyError, TypeError):
-        return 0.0
+        return None
 
 
 def _draw(run: Analysis, folder: Path) -> list[Picture]:
@@ -78,12 +79,13 @@ def _draw(run: Analysis, folder: Path) -> list[Picture]:
         path = folder / f"{name}.png"
         try:
             with style.settings():
-                draw(run).savefig(path)
+                determine(partial(_save, draw, run, path))
         except LogError as fault:
             pictures.append(Picture(name, caption, None, str(fault)))
-        except NOT_THESE as fault:
-            reason = f"the log's values do not fit together: {fault!r}"
-            pictures.append(Picture(name, caption, None, reason))
         else:
             pictures.append(Picture(name, caption, path))
     return pictures
+
+
+def _save(draw: Callable[[Analysis], Figure], run: Analysis, path: Path) -> None:
+    draw(run).savefig(path)

@@ -91,6 +91,14 @@ def _notes(summary: dict[str, Any]) -> str:
         notes.append(f"Invalid messages are left out: {named}.")
     if summary["lockstep_timeouts"]:
         notes.append(f"The plant continued without a command {summary['lockstep_timeouts']} times.")
+    notes += [f"Incident: {text}." for text in summary["incidents"]]
+    notes += [f"Vehicle: {text}." for text in summary["vehicle_warnings"] or ()]
+    told = summary["incidents"]
+    notes += [
+        f"Note of the check: {text}." for text in summary["check"]["notes"] if text not in told
+    ]
+    if summary["judged_by"] != "ground truth":
+        notes.append(f"The limits are judged by {summary['judged_by']}: the log has no truth.")
     return "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes)
 
 

@@ -101,6 +101,7 @@ class UvmsNode(Node):
         self._reported = -DIAGNOSTICS_PERIOD
         self._complained = 0.0
         self._refused = 0
+        self._told: dict[str, Any] = {}  # counts that are on /diagnostics
         self.plausibility = Plausibility(self.vehicle)
         self._intake: Intake | None = None
         self._watchdog = Watchdog(time.monotonic())
@@ -309,14 +310,16 @@ class UvmsNode(Node):
         self, stamp: int, level: int = diagnostics.OK, message: str = "ok", **values: Any
     ) -> None:
         """Publish this node's state on /diagnostics."""
-        counts = {"refused": self._refused, **self.more_counts()}
-        if self._intake is not None:
-            counts |= self._intake.counts
-        name = self.get_name()
-        self._status = Status(stamp, name, level, message, counts | values, self.run_id)
+        self._told, name = self._counts(), self.get_name()
+        self._status = Status(stamp, name, level, message, self._told | values, self.run_id)
         self._diagnostics(self._status)
         self._reported = stamp
         self._watchdog.said(time.monotonic())
+
+    def _counts(self) -> dict[str, Any]:
+        """What was counted so far, for /diagnostics."""
+        counts = {"refused": self._refused, **self.more_counts()}
+        return counts if self._intake is None else counts | self._intake.counts
 
     def report_each_second(
         self, stamp: int, level: int = diagnostics.OK, message: str = "ok", **values: Any
@@ -370,6 +373,10 @@ class UvmsNode(Node):
         return response
 
     def _answer_sent(self, _: Any, response: Any) -> Any:
+        newest = self._status
+        if newest.stamp > 0 and self._counts() != self._told:
+            # In a run: what it has counted since it last reported would be lost.
+            self.report(newest.stamp, newest.level, newest.message)
         response.success, response.message = True, json.dumps(self._sent)
         return response
 

@@ -9,13 +9,16 @@ from pydantic import Field
 from std_srvs.srv import SetBool, Trigger
 
 from uvms_core import diagnostics, topics
+from uvms_core.attitude import attitude_status
+from uvms_core.checks import MAX_AGE_S
 from uvms_core.config import Config
 from uvms_core.errors import StampError
 from uvms_core.ros.endpoints import Endpoint, Publishers
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import UvmsNode
+from uvms_core.ros.node import DIAGNOSTICS_PERIOD, UvmsNode
 from uvms_core.ros.roll_call import SEPARATOR, RollCall, unread
 from uvms_core.signals import (
+    Array,
     JointCommand,
     ThrusterCommand,
     to_nanoseconds,
@@ -49,7 +52,7 @@ class PaceConfig(Config):
         180.0, gt=0.0, description="the same at the first tick, when nodes may still compile, s"
     )
     stale_s: float = Field(
-        0.5, gt=0.0, description="age at which realtime takes a command for missing, s"
+        MAX_AGE_S, gt=0.0, description="age at which realtime takes a command for missing, s"
     )
     duration_s: float = Field(0.0, ge=0.0, description="where the plant stops, s; 0: never")
     auto_start: bool = Field(True, description="start by itself as soon as all nodes are there")
@@ -96,6 +99,7 @@ class PlantNode(UvmsNode):
         self._look = time.monotonic() + LOOK
         self._recorded = 0
         self._held = False
+        self._tilt_reported = -DIAGNOSTICS_PERIOD
         if self.lockstep and self._pace.recorder_window:
             self.listen(topics.RECORDED, self._take_recorded)
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
@@ -234,7 +238,22 @@ class PlantNode(UvmsNode):
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
         for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
             self.send(topic, signal)
-        self.report_each_second(stamp, lockstep_timeouts=self._timeouts)
+        self._warn_of_attitude(stamp, truth.odometry.quaternion)
+        self.report_each_second(stamp, **self._values)
+
+    def _warn_of_attitude(self, stamp: int, quaternion: Array) -> None:
+        """At most once a second, whatever else the plant has to report."""
+        if 0 <= stamp - self._tilt_reported < DIAGNOSTICS_PERIOD:
+            return
+        level, text = attitude_status(quaternion)
+        if level != diagnostics.OK:
+            self._tilt_reported = stamp
+            self.report(stamp, level, text, **self._values)
+
+    @property
+    def _values(self) -> dict[str, Any]:
+        """What the plant says about its time, besides what all nodes count."""
+        return {"lockstep_timeouts": self._timeouts, "stale_s": self._pace.stale_s}
 
     @property
     def _finished(self) -> bool:
