@@ -180,7 +180,7 @@ def test_a_node_that_starts_late_does_not_wait_for_what_it_missed():
     assert tick.stamp == 301 * DT
 
 
-def test_after_a_reset_time_may_begin_anew():
+def test_after_a_reset_time_may_start_over():
     gated = gate()
     for name, when in tick_inputs(0):
         gated.push(name, when, None)

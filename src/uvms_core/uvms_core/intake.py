@@ -17,8 +17,8 @@ from uvms_core.timeline import Item, Judged, Jump, Timeline
 from uvms_core.topic import Topic
 
 BRIDGED = to_nanoseconds(MAX_AGE_S)
-"""Longest gap that a part goes on after as if nothing had been, ns; after a longer one it begins
-anew: its derivatives, integrals and filters would take the gap for one long step."""
+"""Longest gap that a part goes on after as if nothing had been, ns; after a longer one it is
+restarted: its derivatives, integrals and filters would take the gap for one long step."""
 UNREADABLE, IMPLAUSIBLE, JUMPS, RESETS = "unreadable", "implausible", "jumps_taken", "resets"
 
 
@@ -29,7 +29,7 @@ class Intake:
         gate: that they go to.
         timeline: of the node.
         plausibility: of the vehicle.
-        begin_anew: called when time has jumped so far that the part must begin anew.
+        on_time_jump: called when time has jumped so far that the part must be restarted.
     """
 
     def __init__(
@@ -37,10 +37,10 @@ class Intake:
         gate: TickGate,
         timeline: Timeline,
         plausibility: Plausibility,
-        begin_anew: Callable[[Jump], None],
+        on_time_jump: Callable[[Jump], None],
     ) -> None:
         self.gate, self.timeline = gate, timeline
-        self._plausibility, self._begin_anew = plausibility, begin_anew
+        self._plausibility, self._on_time_jump = plausibility, on_time_jump
         self._topics: dict[str, Topic] = {}
         self._counts: Counter[str] = Counter({UNREADABLE: 0, IMPLAUSIBLE: 0, JUMPS: 0, RESETS: 0})
         self.faults: list[UvmsError] = []
@@ -102,7 +102,7 @@ class Intake:
         if not jump.is_back and jump.after - jump.before <= BRIDGED:
             return
         self._counts[RESETS] += 1
-        self.news.append(f"{jump}; beginning anew")
+        self.news.append(f"{jump}; restarting")
         self.gate.reset()
         self._plausibility.reset()
-        self._begin_anew(jump)
+        self._on_time_jump(jump)

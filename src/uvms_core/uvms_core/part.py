@@ -71,7 +71,7 @@ class Part(ABC):
         return None
 
     def restart(self, reason: str) -> None:
-        """Begin anew, with the same configuration: its state is not good any more.
+        """Start over with the same configuration: its state is no longer valid.
 
         Args:
             reason: in words, for whoever waits for this part.
@@ -79,7 +79,7 @@ class Part(ABC):
         return None
 
     def safe(self, tick: Tick) -> Iterable[Output]:
-        """What to put out at a tick at which the part cannot step, or made rubbish.
+        """What to put out at a tick at which the part cannot step, or its output is invalid.
 
         Nothing, by default: whoever reads its outputs then goes to its own safe state.
         """
@@ -112,7 +112,7 @@ class InProcess:
         self.refused = 0
         """Signals from outside that were not used."""
         self.unsafe = 0
-        """Ticks at which a part made rubbish and its safe output was used instead."""
+        """Ticks at which the output of a part was invalid and its safe output was used instead."""
 
     def admit_all(self, outputs: Iterable[Output]) -> None:
         """Hand over signals from outside, as `admit` does."""
@@ -150,7 +150,7 @@ class InProcess:
     def tick(self, stamp: int) -> Iterator[tuple[str, list[Output]]]:
         """Call each part whose tick this stamp is; yields role and outputs, already delivered.
 
-        What was refused, and parts that made rubbish, are among the outputs as diagnostics.
+        What was refused, and parts whose output was invalid, are among the outputs as diagnostics.
         """
         for role, part, rules in self._parts:
             if stamp % part.every:
@@ -185,8 +185,8 @@ def safe_step(
 ) -> tuple[list[Output], UvmsError | None]:
     """As `run_step`, but nothing that is not finite or not possible gets out.
 
-    A part that makes rubbish begins anew, so that it does not live on in its state, and its safe
-    output takes the place of what it made.
+    A part whose output is invalid is restarted, since its state may be the cause, and its safe
+    output takes the place of the invalid one.
 
     Returns:
         The outputs, and why they are the safe ones where they are: `UnsafeOutputError`, or the
@@ -207,7 +207,7 @@ def safe_step(
         return _possible(part.safe(tick), plausibility), fault
     for topic, signal in outputs:
         if text := plausibility.fault(topic, signal):
-            unsafe = UnsafeOutputError(f"{role} made rubbish and begins anew: {text}")
+            unsafe = UnsafeOutputError(f"{role}: output is not finite or beyond its bounds; restarted: {text}")
             return _fall_back(part, tick, plausibility, unsafe), unsafe
     return outputs, None
 
@@ -236,9 +236,9 @@ def run_step(role: str, part: Part, tick: Tick) -> list[Output]:
         return list(part.step(tick))
     except UvmsError:
         raise
-    except (np.linalg.LinAlgError, OverflowError, FloatingPointError) as fault:  # of rubbish
+    except (np.linalg.LinAlgError, OverflowError, FloatingPointError) as fault:  # invalid numbers
         raise UnsafeOutputError(
-            f"{role} cannot compute its output and begins anew: {type(fault).__name__}: {fault}"
+            f"{role}: output cannot be computed; restarted: {type(fault).__name__}: {fault}"
         ) from fault
     except Exception as fault:  # a class of the user's may raise anything
         where = traceback.extract_tb(fault.__traceback__)[-1]

@@ -11,6 +11,7 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from uvms_core import signals
+from uvms_core.plausibility.agility import Agility, agility_of
 from uvms_core.plausibility.rule import Bound, Rule, within
 from uvms_core.plausibility.scale import Scale, scale_of
 from uvms_core.signals import Array
@@ -30,9 +31,17 @@ COUNTLESS_RAD = 200 * np.pi
 """Angle of a joint without end stops: a hundred turns."""
 SPECIFIC_FORCE = 20.0
 """Range of an inertial unit, in multiples of gravity: beyond what units of this class measure."""
-ASKED = 1000.0
+ASKED = 100.0
 """A law may ask for this many times what the actuators have, and saturates: a large error times a
 large gain. More is no number of a law."""
+SUDDENLY = 5.0
+"""Change of a command between two ticks, in what the actuators have: from full one way to full the
+other is 2; beyond that it makes no difference to actuators that saturate."""
+REVERSAL = 2.2
+"""Change of a wrench that thrusters have, in all that they have: from full one way to full the
+other, and rounding."""
+EXPLAINED = 2.0
+"""Change of an observed disturbance within a tick, in weight and all thrust."""
 MEASURED = 20.0
 """A joint's measured effort against its drive's limit: impacts and friction come on top."""
 UNEXPLAINED = 1000.0
@@ -48,10 +57,17 @@ SIGMAS = 6.0
 """An estimate may be corrected by this many std of its own uncertainty within a sample."""
 ESTIMATE_M = 0.5
 """And by this without any."""
+ESTIMATE = 0.05
+"""The same for its velocities, m/s and rad/s."""
+ROUNDING = 1e-3
+"""N and N m along axes in which the thrusters have nothing."""
 UNSEEN_M_S = 2.0
 """And by this speed beside its own: the vehicle accelerates, and estimates of a speed are wrong."""
 NOISES = 10.0
 """Noise of a sample in std: none in a billion is beyond it, with room for what a file omits."""
+WORSE = 5.0
+"""A sensor may be this many times noisier than its file says where a jump is all that tells: two
+samples of such a sensor differ by more than `NOISES` of its std on every day."""
 ANYTHING = 1e12
 """Bound of what nothing is known about: values of another package's sensor."""
 
@@ -73,17 +89,42 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule(
         (
             _quaternion("quaternion", scale, noise),
-            within("angular_velocity", scale.rate, 3, "rad/s"),
+            within(
+                "angular_velocity",
+                scale.rate,
+                3,
+                "rad/s",
+                rate=agility_of(vehicle).nu_dot[3:],
+                slack=WORSE * NOISES * np.radians(imu.gyro_noise_deg_s),
+            ),
             within("linear_acceleration", force, 3, "m/s^2"),
         ),
         quaternion="quaternion",
+        extra_slack=_own_turn,
     )
+
+
+def _own_turn(imu: signals.ImuSample, elapsed_s: float) -> Array:
+    """By how much the next sample may differ (10,): what turns may stop."""
+    slack = np.zeros(4 + 3 + 3)
+    slack[4:7] = np.linalg.norm(imu.angular_velocity)
+    return slack
 
 
 def _dvl(vehicle: Vehicle, scale: Scale) -> Rule:
     """The transducer moves with the hull: its lever times the rate comes on top."""
-    speed = scale.speed + scale.rate * float(np.linalg.norm(vehicle.sensors.dvl.position_m))
-    return Rule((within("velocity", speed, 3, "m/s"),))
+    dvl, nu_dot = vehicle.sensors.dvl, agility_of(vehicle).nu_dot
+    lever = float(np.linalg.norm(dvl.position_m))
+    speed = scale.speed + scale.rate * lever
+    rate = nu_dot[:3] + float(np.max(nu_dot[3:])) * lever
+    slack = WORSE * NOISES * dvl.noise_m_s
+    bound = within("velocity", speed, 3, "m/s", rate=rate, slack=slack)
+    return Rule((bound,), extra_slack=_own_speed)
+
+
+def _own_speed(dvl: signals.DvlSample, elapsed_s: float) -> Array:
+    """By how much the next sample may differ (3,): what moves may stop, or turn about."""
+    return np.full(3, float(np.linalg.norm(dvl.velocity)))
 
 
 def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -116,10 +157,26 @@ def _joints(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule(
         (
             Bound("position", low - noise, high + noise, n, "rad", rate=rate, slack=noise + 0.05),
-            within("velocity", rate, n, "rad/s"),
+            within(
+                "velocity",
+                rate,
+                n,
+                "rad/s",
+                rate=agility_of(vehicle).q_ddot,
+                slack=WORSE * rate_noise,
+            ),
             within("effort", MEASURED * scale.effort, n, "N m"),
-        )
+        ),
+        extra_slack=_own_rates,
     )
+
+
+def _own_rates(joints: signals.JointStates, elapsed_s: float) -> Array:
+    """By how much the next sample may differ (3 n,): a stop throws every joint back."""
+    n = joints.velocity.size
+    slack = np.zeros(3 * n)
+    slack[n : 2 * n] = 2.0 * np.linalg.norm(joints.velocity)
+    return slack
 
 
 def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -129,7 +186,7 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
         (
             within("position", place, 3, "m", rate=UNSEEN_M_S, slack=ESTIMATE_M),
             _quaternion("quaternion", scale, 0.0),
-            within("nu", rates, 6, "m/s or rad/s"),
+            within("nu", rates, 6, "m/s or rad/s", rate=agility_of(vehicle).nu_dot, slack=ESTIMATE),
             _covariance("pose_covariance", 6),
             _covariance("twist_covariance", 6),
         ),
@@ -139,33 +196,46 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
 
 
 def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
-    """By how much the next estimate may differ (85,): its own speed, and its own uncertainty."""
+    """By how much the next estimate may differ (85,): its own uncertainty and speed, which may stop."""
     slack = np.zeros(3 + 4 + 6 + 36 + 36)
     std = np.sqrt(np.maximum(odometry.pose_covariance.diagonal(), 0.0))
     speed = float(np.linalg.norm(odometry.nu[:3]))
     slack[:3] = SIGMAS * std[:3] + speed * elapsed_s
     slack[3:7] = SIGMAS * 0.5 * float(np.max(std[3:]))
+    rates = np.sqrt(np.maximum(odometry.twist_covariance.diagonal(), 0.0))
+    slack[7:10] = SIGMAS * rates[:3] + speed
+    slack[10:13] = SIGMAS * rates[3:] + float(np.linalg.norm(odometry.nu[3:]))
     return slack
 
 
 def _command(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("wrench", _wrench(ASKED * scale.force, scale), 6, "N or N m"),))
+    force = _wrench(scale.force, scale)
+    bound = within("wrench", ASKED * force, 6, "N or N m", rate=0.0, slack=SUDDENLY * force)
+    return Rule((bound,))
 
 
 def _achieved(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("wrench", _wrench(2.0 * scale.force, scale), 6, "N or N m"),))
+    force, slack = _wrench(2.0 * scale.force, scale), REVERSAL * agility_of(vehicle).wrench
+    return Rule((within("wrench", force, 6, "N or N m", rate=0.0, slack=slack + ROUNDING),))
 
 
 def _disturbance(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("wrench", _load(scale), 6, "N or N m"),))
+    load = _wrench(scale.force + scale.weight, scale)
+    bound = within("wrench", UNEXPLAINED * load, 6, "N or N m", rate=0.0, slack=EXPLAINED * load)
+    return Rule((bound,))
 
 
 def _joint_command(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("effort", ASKED * scale.effort, vehicle.n_joints, "N m"),))
+    slack = SUDDENLY * scale.effort
+    bound = within("effort", ASKED * scale.effort, vehicle.n_joints, "N m", rate=0.0, slack=slack)
+    return Rule((bound,))
 
 
 def _thruster_command(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("thrust", ASKED * scale.force, vehicle.n_thrusters, "N"),))
+    thrust = agility_of(vehicle).thrust
+    slack = SUDDENLY * thrust
+    bound = within("thrust", ASKED * thrust, thrust.size, "N", rate=0.0, slack=slack)
+    return Rule((bound,))
 
 
 def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -215,10 +285,6 @@ def _angles(vehicle: Vehicle) -> tuple[Array, Array]:
 def _wrench(force: float, scale: Scale) -> Array:
     """A force along each axis, and its moment at the vehicle's size."""
     return force * np.array([1.0] * 3 + [scale.size] * 3)
-
-
-def _load(scale: Scale) -> Array:
-    return _wrench(UNEXPLAINED * (scale.force + scale.weight), scale)
 
 
 _Maker = Callable[[Vehicle, Scale], Rule]

@@ -21,7 +21,7 @@ class Plausibility:
         self._watches: dict[str, Watch] = {}
 
     def reset(self) -> None:
-        """Forget all samples: time or place begins anew."""
+        """Forget all samples: time or place starts over."""
         for watch in self._watches.values():
             watch.reset()
 
