@@ -109,8 +109,9 @@ class InProcess:
             for topic, rule in part.inputs.items():
                 self._rules.setdefault(topic.name, []).append(rule)
         self._faults: list[str] = []
+        self._excuses = False
         self.refused = 0
-        """Signals from outside that were not used."""
+        """Signals that were not used."""
         self.unsafe = 0
         """Ticks at which the output of a part was invalid and its safe output was used instead."""
 
@@ -130,22 +131,38 @@ class InProcess:
         return len(signals) > 1 and self._plausibility.are_good(topic, signals)
 
     def admit(self, topic: Topic, signal: Any) -> None:
-        """Hand over a signal from outside, unless this vehicle cannot have it."""
+        """Hand over a signal from outside; one that this vehicle cannot have is excused."""
         if topic.name not in self._rules:
             return
+        if self._is_refused(topic, signal):
+            self._excuse(topic, signal.stamp)
+        else:
+            self.deliver(topic, signal)
+
+    def is_usable(self, topic: Topic, signal: Any) -> bool:
+        """Whether who reads a part's output outside, as the plant does, may use it."""
+        return not self._is_refused(topic, signal, is_checked=True)
+
+    def _is_refused(self, topic: Topic, signal: Any, is_checked: bool = False) -> bool:
+        if self._plausibility is None:
+            return False
         try:
-            if self._plausibility is not None:
-                self._plausibility.admit(topic, signal)
+            self._plausibility.admit(topic, signal, is_checked)
         except UvmsError as fault:
             self.refused += 1
             self._faults.append(str(fault))
-        else:
-            self.deliver(topic, signal)
+            return True
+        return False
 
     def deliver(self, topic: Topic, signal: Any) -> None:
         """Hand a signal to every part that reads its topic."""
         for rule in self._rules.get(topic.name, ()):
             rule.push(signal.stamp, signal)
+
+    def _excuse(self, topic: Topic, stamp: int) -> None:
+        self._excuses = True
+        for rule in self._rules[topic.name]:
+            rule.excuse(stamp)
 
     def tick(self, stamp: int) -> Iterator[tuple[str, list[Output]]]:
         """Call each part whose tick this stamp is; yields role and outputs, already delivered.
@@ -155,13 +172,29 @@ class InProcess:
         for role, part, rules in self._parts:
             if stamp % part.every:
                 continue
-            tick = Tick(stamp, {name: rule.take(stamp) for name, rule in rules})
+            missing = self._missing(rules, stamp) if self._excuses else ()
+            tick = Tick(stamp, {name: rule.take(stamp) for name, rule in rules}, missing)
             outputs = self._step(role, part, tick)
             for topic, signal in outputs:
-                self.deliver(topic, signal)
+                self._pass_on(topic, signal)
             if self._faults:
                 outputs.append(self._diagnosis(role, stamp))
             yield role, outputs
+
+    def _pass_on(self, topic: Topic, signal: Any) -> None:
+        """Hand a part's output to its readers, which look at jumps as nodes do."""
+        rules = self._rules.get(topic.name)
+        if rules is None:
+            return
+        if self._is_refused(topic, signal, is_checked=True):
+            self._excuse(topic, signal.stamp)
+            return
+        for rule in rules:
+            rule.push(signal.stamp, signal)
+
+    @staticmethod
+    def _missing(rules: Iterable[tuple[str, Input]], stamp: int) -> tuple[str, ...]:
+        return tuple(name for name, rule in rules if rule.missing(stamp))
 
     def _step(self, role: str, part: Part, tick: Tick) -> list[Output]:
         if self._plausibility is None:
@@ -169,6 +202,8 @@ class InProcess:
         outputs, fault = safe_step(role, part, tick, self._plausibility)
         if isinstance(fault, UnsafeOutputError):
             self.unsafe += 1
+            self._faults.append(str(fault))
+        elif fault is not None and tick.missing:
             self._faults.append(str(fault))
         elif fault is not None:
             raise fault
@@ -207,7 +242,9 @@ def safe_step(
         return _possible(part.safe(tick), plausibility), fault
     for topic, signal in outputs:
         if text := plausibility.fault(topic, signal):
-            unsafe = UnsafeOutputError(f"{role}: output is not finite or beyond its bounds; restarted: {text}")
+            unsafe = UnsafeOutputError(
+                f"{role}: output is not finite or beyond its bounds; restarted: {text}"
+            )
             return _fall_back(part, tick, plausibility, unsafe), unsafe
     return outputs, None
 

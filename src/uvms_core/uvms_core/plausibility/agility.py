@@ -52,14 +52,19 @@ def _authority(vehicle: Vehicle, thrust: Array) -> Array:
 
 
 def _nu_dot(vehicle: Vehicle, authority: Array) -> Array:
-    """Thrust, a current, the arm's reaction and the restoring moment; a fall with 1 g."""
+    """Thrust, a current, the arm's reaction and the restoring moment; a fall with 1 g.
+
+    Munk's moment turns a slender body that is not along the current (Fossen 2021, ch. 10).
+    """
     hull, gravity = vehicle.hull, vehicle.environment.gravity_m_s2
     load = authority.copy()
     load[:3] += CURRENT_M_S * diagonal(hull.linear_damping)[:3]
     load[:3] += CURRENT_M_S**2 * diagonal(hull.quadratic_damping)[:3]
     load[3:] += _arm_moment(vehicle) + _restoring_moment(vehicle)
+    added = diagonal(hull.added_mass)
+    load[3:] += CURRENT_M_S**2 * np.abs(added[[1, 2, 0]] - added[[2, 0, 1]])  # Munk's moment
     inertia = np.concatenate([np.full(3, hull.mass_kg), diagonal(hull.inertia_kg_m2)])
-    rates = UNCERTAIN * load / (inertia + diagonal(hull.added_mass))
+    rates = UNCERTAIN * load / (inertia + added)
     rates[:3] += gravity  # whatever the vehicle really weighs
     return np.asarray(rates)
 

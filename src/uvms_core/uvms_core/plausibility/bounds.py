@@ -11,7 +11,14 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from uvms_core import signals
-from uvms_core.plausibility.agility import Agility, agility_of
+from uvms_core.plausibility.agility import agility_of
+from uvms_core.plausibility.continuity import (
+    STEP_LIMITS,
+    STEP_M,
+    STEP_M_S,
+    STEP_RAD,
+    Continuity,
+)
 from uvms_core.plausibility.rule import Bound, Rule, within
 from uvms_core.plausibility.scale import Scale, scale_of
 from uvms_core.signals import Array
@@ -46,15 +53,16 @@ MEASURED = 20.0
 """A joint's measured effort against its drive's limit: impacts and friction come on top."""
 UNEXPLAINED = 1000.0
 """A disturbance against the weight and all thrust: what an observer makes of an impact."""
-ACCELERATION = 1000.0
-"""A planned acceleration, m/s^2 or rad/s^2: none of these vehicles has a hundredth of it."""
+ACCELERATION = 10.0
+"""A planned acceleration, m/s^2 or rad/s^2, that every vehicle is granted beside its own."""
 UNIT = 10.0
 """Of a quaternion, whose length `uvms_core.checks` holds to 1; wide, so that the quick test of the
 whole signal is left to the other values."""
 VARIANCE = 1e12
 """A std of a million of whatever unit: what filters write for `not known` is below it."""
-SIGMAS = 6.0
-"""An estimate may be corrected by this many std of its own uncertainty within a sample."""
+SIGMAS = 10.0
+"""An estimate may be corrected by this many std of its own uncertainty within a sample: a filter
+that began at rest in a vehicle at 4 m/s, and refused its velocities for a while, is off by nine."""
 ESTIMATE_M = 0.5
 """And by this without any."""
 ESTIMATE = 0.05
@@ -196,7 +204,7 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
 
 
 def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
-    """By how much the next estimate may differ (85,): its own uncertainty and speed, which may stop."""
+    """By how much the next estimate may differ (85,): its uncertainty, and its speed may stop."""
     slack = np.zeros(3 + 4 + 6 + 36 + 36)
     std = np.sqrt(np.maximum(odometry.pose_covariance.diagonal(), 0.0))
     speed = float(np.linalg.norm(odometry.nu[:3]))
@@ -242,17 +250,28 @@ def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
     low, high = _angles(vehicle)
     place = np.array([MAP_M, MAP_M, DEEPEST_M])
     rates = np.array([scale.speed] * 3 + [scale.rate] * 3)
+    agility = agility_of(vehicle)
+    nu_dot = np.maximum(agility.nu_dot, ACCELERATION)
+    limits = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
+    steps = {
+        "position": STEP_M,
+        "nu": STEP_M_S,
+        "q": STEP_RAD,
+        "q_dot": STEP_LIMITS * limits,
+        "end_effector": STEP_M + scale.size * STEP_RAD,
+    }
     return Rule(
         (
             within("position", place, 0, "m"),
             within("nu", rates, 0, "m/s or rad/s"),
-            within("nu_dot", ACCELERATION, 0, "m/s^2 or rad/s^2"),
+            within("nu_dot", nu_dot, 0, "m/s^2 or rad/s^2"),
             Bound("q", low, high, 0, "rad"),
             within("q_dot", scale.joint_rate, 0, "rad/s"),
-            within("q_ddot", ACCELERATION, 0, "rad/s^2"),
+            within("q_ddot", agility.q_ddot, 0, "rad/s^2"),
             within("end_effector", place + scale.size, 0, "m"),
             Bound("times", 0.0, MAP_M, 0, "s"),
-        )
+        ),
+        step_fault=Continuity(steps).fault,
     )
 
 

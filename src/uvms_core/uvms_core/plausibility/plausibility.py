@@ -25,8 +25,8 @@ class Plausibility:
         for watch in self._watches.values():
             watch.reset()
 
-    def admit(self, topic: Topic, signal: Any) -> str | None:
-        """Take a sample that comes in.
+    def admit(self, topic: Topic, signal: Any, is_checked: bool = False) -> str | None:
+        """Take a sample that comes in; of one that is checked (`fault`) only its jump matters.
 
         Returns:
             What happened, in words, where a jump is taken for real; None as a rule.
@@ -37,7 +37,7 @@ class Plausibility:
         watch = self._watches.get(topic.name)
         if watch is None:
             watch = self._watches[topic.name] = Watch(self._rule(topic))
-        fault = watch.fault(signal.stamp, signal)
+        fault = watch.fault(signal.stamp, signal, is_checked)
         if fault is not None:
             raise ImplausibleError(f"{topic.name}: {fault}")
         if watch.news is None:
