@@ -16,6 +16,7 @@ from uvms_core.plausibility.continuity import (
     STEP_LIMITS,
     STEP_M,
     STEP_M_S,
+    STEP_M_S2,
     STEP_RAD,
     Continuity,
 )
@@ -71,6 +72,8 @@ ROUNDING = 1e-3
 """N and N m along axes in which the thrusters have nothing."""
 UNSEEN_M_S = 2.0
 """And by this speed beside its own: the vehicle accelerates, and estimates of a speed are wrong."""
+UNSEEN_RAD_S = 2.0
+"""The same for a rate of turn."""
 NOISES = 10.0
 """Noise of a sample in std: none in a billion is beyond it, with room for what a file omits."""
 WORSE = 5.0
@@ -94,9 +97,12 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
     imu = vehicle.sensors.imu
     noise = NOISES * np.radians(max(imu.roll_pitch_noise_deg, imu.heading_noise_deg))
     force = SPECIFIC_FORCE * vehicle.environment.gravity_m_s2
+    nu_dot, lever = agility_of(vehicle).nu_dot, float(np.linalg.norm(imu.position_m))
+    felt = nu_dot[:3] + lever * float(np.max(nu_dot[3:]))  # an impact takes no time
+    felt = felt + WORSE * NOISES * imu.accelerometer_noise_m_s2
     return Rule(
         (
-            _quaternion("quaternion", scale, noise),
+            _quaternion("quaternion", noise),
             within(
                 "angular_velocity",
                 scale.rate,
@@ -105,7 +111,7 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
                 rate=agility_of(vehicle).nu_dot[3:],
                 slack=WORSE * NOISES * np.radians(imu.gyro_noise_deg_s),
             ),
-            within("linear_acceleration", force, 3, "m/s^2"),
+            within("linear_acceleration", force, 3, "m/s^2", rate=0.0, slack=felt),
         ),
         quaternion="quaternion",
         extra_slack=_own_turn,
@@ -113,9 +119,12 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
 
 
 def _own_turn(imu: signals.ImuSample, elapsed_s: float) -> Array:
-    """By how much the next sample may differ (10,): what turns may stop."""
+    """By how much the next sample may differ (10,): it turns, and may stop; so does gravity."""
     slack = np.zeros(4 + 3 + 3)
-    slack[4:7] = np.linalg.norm(imu.angular_velocity)
+    rate = float(np.linalg.norm(imu.angular_velocity))
+    slack[:4] = 0.5 * rate * elapsed_s
+    slack[4:7] = rate
+    slack[7:] = float(np.linalg.norm(imu.linear_acceleration)) * rate * elapsed_s
     return slack
 
 
@@ -193,7 +202,7 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule(
         (
             within("position", place, 3, "m", rate=UNSEEN_M_S, slack=ESTIMATE_M),
-            _quaternion("quaternion", scale, 0.0),
+            _quaternion("quaternion", 0.0),
             within("nu", rates, 6, "m/s or rad/s", rate=agility_of(vehicle).nu_dot, slack=ESTIMATE),
             _covariance("pose_covariance", 6),
             _covariance("twist_covariance", 6),
@@ -209,10 +218,11 @@ def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
     std = np.sqrt(np.maximum(odometry.pose_covariance.diagonal(), 0.0))
     speed = float(np.linalg.norm(odometry.nu[:3]))
     slack[:3] = SIGMAS * std[:3] + speed * elapsed_s
-    slack[3:7] = SIGMAS * 0.5 * float(np.max(std[3:]))
+    turn = float(np.linalg.norm(odometry.nu[3:]))
+    slack[3:7] = 0.5 * (SIGMAS * float(np.max(std[3:])) + turn * elapsed_s)
     rates = np.sqrt(np.maximum(odometry.twist_covariance.diagonal(), 0.0))
     slack[7:10] = SIGMAS * rates[:3] + speed
-    slack[10:13] = SIGMAS * rates[3:] + float(np.linalg.norm(odometry.nu[3:]))
+    slack[10:13] = SIGMAS * rates[3:] + turn
     return slack
 
 
@@ -253,11 +263,15 @@ def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
     agility = agility_of(vehicle)
     nu_dot = np.maximum(agility.nu_dot, ACCELERATION)
     limits = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
+    strengths = np.radians([joint.acceleration_limit_deg_s2 for joint in vehicle.arm.joints])
     steps = {
         "position": STEP_M,
+        "quaternion": 0.5 * STEP_RAD,
         "nu": STEP_M_S,
+        "nu_dot": STEP_M_S2,
         "q": STEP_RAD,
         "q_dot": STEP_LIMITS * limits,
+        "q_ddot": STEP_LIMITS * strengths,
         "end_effector": STEP_M + scale.size * STEP_RAD,
     }
     return Rule(
@@ -285,9 +299,9 @@ def _of_anything(signal: type | None) -> Rule:
 _NOT_NUMBERS = ("saturated",)
 
 
-def _quaternion(field: str, scale: Scale, noise: float) -> Bound:
+def _quaternion(field: str, noise: float) -> Bound:
     """Components change by half the angle; the slack is for the estimate's corrections."""
-    return within(field, UNIT, 4, "", rate=0.5 * scale.rate, slack=0.1 + noise)
+    return within(field, UNIT, 4, "", rate=0.5 * UNSEEN_RAD_S, slack=0.1 + noise)
 
 
 def _covariance(field: str, size: int) -> Bound:

@@ -16,9 +16,11 @@ STEP_RAD = 0.5
 """The same for a joint's angle."""
 STEP_M_S = 2.0
 """Step of a planned velocity, m/s and rad/s: a plan is cut off at once."""
+STEP_M_S2 = 4.0
+"""Step of a planned acceleration, m/s^2 and rad/s^2: plans may have corners in their speed."""
 STEP_LIMITS = 4.0
-"""Step of a planned joint rate in rate limits: from full one way to full the other, and twice that
-for goals that are scaled beyond the limits."""
+"""Step of a joint's planned rate and acceleration in its limits: from full one way to full the
+other is 2, and twice that for plans that are scaled beyond the limits."""
 
 
 class Continuity:
@@ -37,6 +39,8 @@ class Continuity:
             return None
         for field, allowed in self._steps.items():
             values = np.vstack([_at(last, field, now.stamp), getattr(now, field)])
+            if field == "quaternion":
+                values = _in_one_half(values)
             steps = np.abs(np.diff(values, axis=0)).max(axis=0)
             wrong = np.flatnonzero(~(steps <= allowed))
             if wrong.size:
@@ -47,6 +51,13 @@ class Continuity:
                     f" possible for this vehicle is {limit:.3g}"
                 )
         return None
+
+
+def _in_one_half(quaternions: Array) -> Array:
+    """The same rotations with signs such that neighbours are near each other."""
+    agree = np.einsum("ij,ij->i", quaternions[1:], quaternions[:-1]) >= 0.0
+    signs = np.concatenate([[1.0], np.cumprod(np.where(agree, 1.0, -1.0))])
+    return quaternions * signs[:, None]
 
 
 def _at(last: Reference, field: str, stamp: int) -> Array:
