@@ -5,7 +5,6 @@ from at_the_bounds import CASES, Harm, at_the_bound, pose
 
 from uvms_bringup.loop import Loop
 from uvms_bringup.scenario import load_scenario
-from uvms_core import topics
 
 AT = 1_000_000_000
 TICKS = 60

@@ -15,6 +15,8 @@ from uvms_core.vehicle.frames import distal_pose
 UNCERTAIN = 2.0
 """Factor on what acts on the vehicle: coefficients of drag and inertia are known to a factor of
 about this, and its axes are coupled."""
+DRIVEN = 1.1
+"""The same for a joint, whose drive has its limit exactly; the vehicle gives way a little."""
 CURRENT_M_S = 2.0
 """Water that a vehicle at rest is suddenly in: the strongest tidal streams that vehicles of this
 class are used in. What drag does to a vehicle's own speed comes on top, by that speed."""
@@ -96,5 +98,5 @@ def _q_ddot(vehicle: Vehicle) -> Array:
         lever = float(np.hypot(center[0], center[1]))
         inertia = joint.rotor_inertia_kg_m2 + about_cg + link.mass_kg * lever**2
         load = joint.effort_limit_nm + link.mass_kg * gravity * lever
-        rates.append(load / inertia)
+        rates.append(DRIVEN * load / inertia)
     return np.array(rates)

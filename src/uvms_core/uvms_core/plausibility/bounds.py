@@ -39,12 +39,17 @@ COUNTLESS_RAD = 200 * np.pi
 """Angle of a joint without end stops: a hundred turns."""
 SPECIFIC_FORCE = 20.0
 """Range of an inertial unit, in multiples of gravity: beyond what units of this class measure."""
-ASKED = 100.0
-"""A law may ask for this many times what the actuators have, and saturates: a large error times a
-large gain. More is no number of a law."""
+ASKED = 1000.0
+"""A law may ask for a wrench of this many times all thrust: a large error times a large gain, which
+the allocator saturates. That of this project asks for a hundred times when the vehicle falls with
+ten times its mass."""
+ASKED_SUDDENLY = 300.0
+"""And for this many times more or less than a tick before: such a vehicle, and a factor of three."""
+COMMANDED = 100.0
+"""An actuator may be sent this many times its limit by a part that leaves saturation to it."""
 SUDDENLY = 5.0
-"""Change of a command between two ticks, in what the actuators have: from full one way to full the
-other is 2; beyond that it makes no difference to actuators that saturate."""
+"""Change of such a command between two ticks, in limits: from full one way to full the other is 2;
+what is far beyond makes no difference to an actuator that saturates."""
 REVERSAL = 2.2
 """Change of a wrench that thrusters have, in all that they have: from full one way to full the
 other, and rounding."""
@@ -67,7 +72,7 @@ that began at rest in a vehicle at 4 m/s, and refused its velocities for a while
 ESTIMATE_M = 0.5
 """And by this without any."""
 ESTIMATE = 0.05
-"""The same for its velocities, m/s and rad/s."""
+"""The same for velocities and joint angles, m/s, rad/s and rad."""
 ROUNDING = 1e-3
 """N and N m along axes in which the thrusters have nothing."""
 UNSEEN_M_S = 2.0
@@ -98,7 +103,8 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
     noise = NOISES * np.radians(max(imu.roll_pitch_noise_deg, imu.heading_noise_deg))
     force = SPECIFIC_FORCE * vehicle.environment.gravity_m_s2
     nu_dot, lever = agility_of(vehicle).nu_dot, float(np.linalg.norm(imu.position_m))
-    felt = nu_dot[:3] + lever * float(np.max(nu_dot[3:]))  # an impact takes no time
+    # From the greatest one way to the greatest the other: an impact takes no time.
+    felt = 2.0 * (nu_dot[:3] + lever * float(np.max(nu_dot[3:])))
     felt = felt + WORSE * NOISES * imu.accelerometer_noise_m_s2
     return Rule(
         (
@@ -171,29 +177,30 @@ def _joints(vehicle: Vehicle, scale: Scale) -> Rule:
     rate_noise = np.radians(NOISES * encoders.rate_noise_deg_s)
     low, high = _angles(vehicle)
     rate = scale.joint_rate + rate_noise
+    slack = WORSE * noise + ESTIMATE  # beside its motion
+    q_ddot = agility_of(vehicle).q_ddot
+
+    def own_motion(joints: signals.JointStates, elapsed_s: float) -> Array:
+        """By how much the next sample may differ (3 n,): it moves, and a stop throws it back."""
+        speed = float(np.linalg.norm(joints.velocity))
+        moved = speed * elapsed_s + 0.5 * q_ddot * elapsed_s**2
+        return np.concatenate([moved, np.full(n, 2.0 * speed), np.zeros(n)])
+
     return Rule(
         (
-            Bound("position", low - noise, high + noise, n, "rad", rate=rate, slack=noise + 0.05),
+            Bound("position", low - noise, high + noise, n, "rad", rate=0.0, slack=slack),
             within(
                 "velocity",
                 rate,
                 n,
                 "rad/s",
-                rate=agility_of(vehicle).q_ddot,
+                rate=q_ddot,
                 slack=WORSE * rate_noise,
             ),
             within("effort", MEASURED * scale.effort, n, "N m"),
         ),
-        extra_slack=_own_rates,
+        extra_slack=own_motion,
     )
-
-
-def _own_rates(joints: signals.JointStates, elapsed_s: float) -> Array:
-    """By how much the next sample may differ (3 n,): a stop throws every joint back."""
-    n = joints.velocity.size
-    slack = np.zeros(3 * n)
-    slack[n : 2 * n] = 2.0 * np.linalg.norm(joints.velocity)
-    return slack
 
 
 def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -228,7 +235,7 @@ def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
 
 def _command(vehicle: Vehicle, scale: Scale) -> Rule:
     force = _wrench(scale.force, scale)
-    bound = within("wrench", ASKED * force, 6, "N or N m", rate=0.0, slack=SUDDENLY * force)
+    bound = within("wrench", ASKED * force, 6, "N or N m", rate=0.0, slack=ASKED_SUDDENLY * force)
     return Rule((bound,))
 
 
@@ -245,14 +252,16 @@ def _disturbance(vehicle: Vehicle, scale: Scale) -> Rule:
 
 def _joint_command(vehicle: Vehicle, scale: Scale) -> Rule:
     slack = SUDDENLY * scale.effort
-    bound = within("effort", ASKED * scale.effort, vehicle.n_joints, "N m", rate=0.0, slack=slack)
+    bound = within(
+        "effort", COMMANDED * scale.effort, vehicle.n_joints, "N m", rate=0.0, slack=slack
+    )
     return Rule((bound,))
 
 
 def _thruster_command(vehicle: Vehicle, scale: Scale) -> Rule:
     thrust = agility_of(vehicle).thrust
     slack = SUDDENLY * thrust
-    bound = within("thrust", ASKED * thrust, thrust.size, "N", rate=0.0, slack=slack)
+    bound = within("thrust", COMMANDED * thrust, thrust.size, "N", rate=0.0, slack=slack)
     return Rule((bound,))
 
 

@@ -20,6 +20,8 @@ JOINT_RATES = 20.0
 """Factor on a joint's rate limit, which is the drive's: a joint that is pushed turns faster."""
 JOINT_RATE_RAD_S = 30.0
 """Granted to every joint: what a light last link gets to when it is let go."""
+FASTEST_JOINT_RAD_S = 100.0
+"""Granted to none: a geared drive does not turn a thousand times a minute."""
 
 
 @dataclass(frozen=True)
@@ -47,13 +49,18 @@ def scale_of(vehicle: Vehicle) -> Scale:
     speed = TERMINAL * float(np.max(_terminal(load, linear[0][:3], linear[1][:3])))
     rate = TERMINAL * float(np.max(_terminal(load * size, linear[0][3:], linear[1][3:])))
     limits = np.radians([joint.rate_limit_deg_s for joint in joints])
+    # A drive at full torque against its friction alone, with nothing beyond it.
+    with np.errstate(divide="ignore"):
+        friction = np.array([joint.viscous_friction_nm_s for joint in joints])
+        free = np.array([joint.effort_limit_nm for joint in joints]) / friction
+    fastest = FASTEST_JOINT_RAD_S
     return Scale(
         speed=float(np.clip(speed, *SPEEDS_M_S)),
         rate=float(np.clip(rate, *RATES_RAD_S)),
         size=size,
         force=force,
         weight=mass * gravity,
-        joint_rate=np.maximum(JOINT_RATES * limits, JOINT_RATE_RAD_S),
+        joint_rate=np.clip(np.maximum(JOINT_RATES * limits, free), JOINT_RATE_RAD_S, fastest),
         effort=np.array([joint.effort_limit_nm for joint in joints]),
     )
 
