@@ -44,7 +44,7 @@ ASKED = 1000.0
 the allocator saturates. That of this project asks for a hundred times when the vehicle falls with
 ten times its mass."""
 ASKED_SUDDENLY = 300.0
-"""And for this many times more or less than a tick before: such a vehicle, and a factor of three."""
+"""And for this many times more or less than a tick before: such a vehicle, and a factor of 3."""
 COMMANDED = 100.0
 """An actuator may be sent this many times its limit by a part that leaves saturation to it."""
 SUDDENLY = 5.0
@@ -69,7 +69,7 @@ VARIANCE = 1e12
 SIGMAS = 10.0
 """An estimate may be corrected by this many std of its own uncertainty within a sample: a filter
 that began at rest in a vehicle at 4 m/s, and refused its velocities for a while, is off by nine."""
-ESTIMATE_M = 0.5
+ESTIMATE_M = 0.75
 """And by this without any."""
 ESTIMATE = 0.05
 """The same for velocities and joint angles, m/s, rad/s and rad."""
