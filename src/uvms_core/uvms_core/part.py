@@ -146,6 +146,8 @@ class InProcess:
     def _is_refused(self, topic: Topic, signal: Any, is_checked: bool = False) -> bool:
         if self._plausibility is None:
             return False
+        if is_checked and self._plausibility.follows(topic, signal):
+            return False
         try:
             self._plausibility.admit(topic, signal, is_checked)
         except UvmsError as fault:

@@ -273,7 +273,7 @@ def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
     nu_dot = np.maximum(agility.nu_dot, ACCELERATION)
     limits = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
     strengths = np.radians([joint.acceleration_limit_deg_s2 for joint in vehicle.arm.joints])
-    steps = {
+    steps: dict[str, Array | float] = {
         "position": STEP_M,
         "quaternion": 0.5 * STEP_RAD,
         "nu": STEP_M_S,

@@ -67,6 +67,17 @@ class Watch:
         self._last, self._refused = sample, None
         return None
 
+    def follows(self, stamp: int, x: Array, signal: Any) -> bool:
+        """Whether values within their bounds certainly follow the last ones; takes them then."""
+        last = self._last
+        if last is None or stamp <= last[0]:
+            return False
+        y = (x - last[1]) * self._rule.inverse(stamp - last[0])
+        if not y.dot(y) <= 1.0:
+            return False
+        self._last, self._refused = (stamp, x, signal), None
+        return True
+
     def _step(self, stamp: int, signal: Any) -> str | None:
         """As `fault`, for a signal of no fixed size within its bounds."""
         sample, last = (stamp, _NONE, signal), self._last
