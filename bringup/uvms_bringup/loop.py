@@ -147,5 +147,10 @@ class Loop:
         yield from self._process.final_status(tick.stamp)
 
     def advance(self, tick: LoopTick) -> None:
-        """Let the plant move to its next tick under the commands of this one."""
-        self.plant.step(tick.thruster_command, tick.joint_command)
+        """Let the plant move to its next tick under the commands of this one that it may use."""
+        usable = self._process.is_usable
+        thrust, effort = tick.thruster_command, tick.joint_command
+        self.plant.step(
+            thrust if usable(topics.THRUSTER_COMMAND, thrust) else None,
+            effort if usable(topics.JOINT_COMMAND, effort) else None,
+        )

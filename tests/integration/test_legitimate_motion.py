@@ -1,10 +1,15 @@
-"""What a vehicle can do is never refused: limp, capsizing, sinking, spinning, in a current."""
+"""What a vehicle can do is never refused: limp, capsizing, sinking, spinning, in a current,
+thrown about by its own thrusters and against its joints' stops."""
+
+from dataclasses import replace
 
 import numpy as np
 import pytest
 
 from uvms_bringup.loop import Loop
 from uvms_bringup.scenario import load_scenario
+from uvms_core import topics
+from uvms_core.plausibility import Plausibility
 
 OFF = {"control.enabled": False}
 CASES = {
@@ -46,3 +51,65 @@ def test_nothing_that_a_vehicle_can_do_is_refused(settings, hull, vehicle):
     process = loop._process
     assert (process.refused, process.unsafe) == (0, 0)
     assert np.isfinite(tick.odometry.position).all()
+
+
+REVERSAL_TICKS = 15
+"""Time in which the arm gets from stop to stop, and the thrusters to their limit and stay there."""
+
+
+def unusual(model, name):
+    """A plant that its vehicle file does not describe: five times the noise, other masses."""
+    hull, sensors = model.hull, model.sensors
+    if name == "five times the noise":
+        noisier = {
+            sensor: section.model_copy(
+                update={
+                    field: 5.0 * getattr(section, field)
+                    for field in type(section).model_fields
+                    if "noise" in field
+                }
+            )
+            for sensor, section in ((each, getattr(sensors, each)) for each in SENSORS)
+        }
+        return model.model_copy(update={"sensors": sensors.model_copy(update=noisier)})
+    factor = {"ten times the mass": 10.0, "a tenth of the mass": 0.1}.get(name, 1.0)
+    heavier = hull.model_copy(update={"mass_kg": factor * hull.mass_kg})
+    return model.model_copy(update={"hull": heavier})
+
+
+SENSORS = ("imu", "dvl", "pressure", "gps", "encoders")
+UNUSUAL = (
+    "five times the noise",
+    "ten times the mass",
+    "a tenth of the mass",
+    "joints thrown from stop to stop",
+    "joints thrown from stop to stop, rolled over",
+    "thrusters reversed",
+    "joints and thrusters",
+)
+
+
+@pytest.mark.parametrize("vehicle", ["reference_auv", "bluerov2_alpha5"])
+@pytest.mark.parametrize("name", UNUSUAL)
+def test_nothing_is_refused_by_bounds_of_another_vehicle_or_at_full_authority(name, vehicle):
+    roll = 170.0 if "rolled" in name else 0.0
+    scenario = load_scenario(
+        "hover", [f"vehicle={vehicle}", f"plant.initial_rpy_deg=[{roll}, 0.0, 0.0]"]
+    )
+    model = scenario.load_vehicle()
+    loop = Loop(scenario, unusual(model, name))
+    process = loop._process
+    process._plausibility = Plausibility(model)  # nobody has told it
+    limits = np.array([thruster.limit_n for thruster in model.thrusters])
+    torques = np.array([joint.effort_limit_nm for joint in model.arm.joints])
+    for k in range(200):
+        tick, way = loop.tick(), 1.0 if (k // REVERSAL_TICKS) % 2 else -1.0
+        outputs = []
+        for topic, signal in tick.outputs:
+            if topic is topics.THRUSTER_COMMAND and "thrusters" in name:
+                signal = replace(signal, thrust=way * limits)
+            if topic is topics.JOINT_COMMAND and "joints" in name:
+                signal = replace(signal, effort=way * torques)
+            outputs.append((topic, signal))
+        loop.advance(replace(tick, outputs=outputs))
+    assert (process.refused, process.unsafe) == (0, 0)

@@ -12,12 +12,15 @@ import uvms_core
 from uvms_core import topics
 from uvms_core.errors import ImplausibleError
 from uvms_core.plausibility import AGREEING, Plausibility, bounds_of
+from uvms_core.plausibility.agility import agility_of
+from uvms_core.plausibility.scale import diagonal
 from uvms_core.signals import (
     GpsSample,
     ImuSample,
     JointStates,
     Odometry,
     PressureSample,
+    Reference,
     Wrench,
 )
 from uvms_core.vehicle import load_vehicle
@@ -150,3 +153,83 @@ def test_every_topic_of_the_loop_has_bounds_for_every_vehicle(name):
         for topic in own.inputs:
             if topic is not topics.CLOCK:
                 assert bounds_of(vehicle, topic).bounds, topic.name
+
+
+SUDDEN = [
+    (topics.ODOMETRY, odometry, {"nu": (9.9, 0.0, 0.0, 19.0, 0.0, 0.0)}, "nu[0] jumps by 9.9 m/s"),
+    (topics.ODOMETRY, odometry, {"nu": (0.0, 0.0, 0.0, 19.0, 0.0, 0.0)}, "nu[3] jumps by 19"),
+    (topics.JOINT_STATES, joints, {"velocity": np.full(N, 25.0)}, "velocity[0] jumps by 25 rad/s"),
+    *(
+        (topics.JOINT_STATES, joints, {"velocity": 25.0 * np.eye(N)[i]}, f"velocity[{i}] jumps")
+        for i in range(N)
+    ),
+]
+
+
+@pytest.mark.parametrize(("topic", "make", "fields", "text"), SUDDEN)
+def test_a_velocity_does_not_change_faster_than_forces_allow(topic, make, fields, text):
+    plausible = Plausibility(VEHICLE)
+    assert plausible.admit(topic, make(0)) is None
+    with pytest.raises(ImplausibleError) as fault:
+        plausible.admit(topic, make(DT, **fields))
+    assert text in str(fault.value)
+    assert plausible.admit(topic, make(2 * DT)) is None
+
+
+def test_what_moves_may_stop_at_once_and_be_thrown_back_by_a_stop():
+    plausible = Plausibility(VEHICLE)
+    fast = np.array([0.0, 12.0, 0.0, 0.0])
+    plausible.admit(topics.JOINT_STATES, joints(0, velocity=fast))
+    assert plausible.admit(topics.JOINT_STATES, joints(DT, velocity=-fast)) is None
+    plausible.admit(topics.ODOMETRY, odometry(0, nu=(4.0, 0.0, 0.0, 6.0, 0.0, 0.0)))
+    assert plausible.admit(topics.ODOMETRY, odometry(DT)) is None
+
+
+def test_the_greatest_accelerations_follow_from_newtons_law():
+    """At least what the thrusters and the drives do alone, and not many times that."""
+    vehicle, agility = VEHICLE, agility_of(VEHICLE)
+    surge = vehicle.hull.mass_kg + diagonal(vehicle.hull.added_mass)[0]
+    forward = [t for t in vehicle.thrusters if t.direction[0] == 1.0]
+    own = sum(t.limit_n for t in forward) / surge
+    assert own < agility.nu_dot[0] < vehicle.environment.gravity_m_s2 + 10.0 * own
+    assert agility.wrench[0] == sum(t.limit_n for t in forward)
+    for joint, rate in zip(vehicle.arm.joints, agility.q_ddot, strict=True):
+        assert rate <= 1.2 * joint.effort_limit_nm / joint.rotor_inertia_kg_m2
+
+
+def plan(stamp, x=0.0, k=11, **fields):
+    zeros = np.zeros((k, N))
+    return replace(
+        Reference(
+            stamp,
+            np.linspace(0.0, 0.5, k),
+            np.tile([x, 0.0, 10.0], (k, 1)),
+            np.tile(LEVEL, (k, 1)),
+            np.zeros((k, 6)),
+            np.zeros((k, 6)),
+            zeros,
+            zeros,
+            zeros,
+            np.tile([x + 1.0, 0.0, 10.0], (k, 1)),
+        ),
+        **fields,
+    )
+
+
+def test_a_plan_goes_on_where_the_last_one_ended():
+    plausible = Plausibility(VEHICLE)
+    assert plausible.admit(topics.REFERENCE, plan(0)) is None
+    with pytest.raises(ImplausibleError, match="position of column 0 steps by 50"):
+        plausible.admit(topics.REFERENCE, plan(S // 2, x=50.0))
+    flipped = plan(S // 2, quaternion=np.tile(-LEVEL, (11, 1)))
+    assert plausible.admit(topics.REFERENCE, flipped) is None
+    sudden = np.zeros((11, N))
+    sudden[5, 1] = 3.0
+    with pytest.raises(ImplausibleError, match="q of column 1 steps by 3"):
+        plausible.admit(topics.REFERENCE, plan(S, q=sudden))
+
+
+def test_after_a_gap_a_plan_may_begin_anywhere():
+    plausible = Plausibility(VEHICLE)
+    plausible.admit(topics.REFERENCE, plan(0))
+    assert plausible.admit(topics.REFERENCE, plan(2 * S, x=50.0)) is None

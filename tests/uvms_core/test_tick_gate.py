@@ -180,7 +180,7 @@ def test_a_node_that_starts_late_does_not_wait_for_what_it_missed():
     assert tick.stamp == 301 * DT
 
 
-def test_after_a_reset_time_may_begin_anew():
+def test_after_a_reset_time_may_start_over():
     gated = gate()
     for name, when in tick_inputs(0):
         gated.push(name, when, None)
@@ -195,3 +195,21 @@ def test_the_gate_says_what_it_waits_for():
     gated.push("a", 0, None)
     gated.push("a", DT, Sample(DT))
     assert gated.waiting() == ["b"]
+
+
+@given(st.permutations(["odometry", "reference"]))
+def test_a_refused_reference_excuses_no_tick_of_the_next_one(order):
+    """Whatever comes first, the reference or the trigger, the tick has the reference."""
+    gated = TickGate({"odometry": Same(), "reference": Covering()}, "odometry", lockstep=True)
+    gated.push("reference", 0, Window(10 * DT))
+    for k in range(10):
+        gated.push("odometry", k * DT, k)
+    gated.excuse("reference", 10 * DT)  # would have covered ten ticks, as the one before it
+    for k in range(10, 20):
+        (tick,) = gated.push("odometry", k * DT, k)
+        assert tick["reference"] == Window(10 * DT)
+    good, released = Window(30 * DT), []
+    for name in order:
+        released += gated.push(name, 20 * DT, good if name == "reference" else 20)
+    (tick,) = released
+    assert tick["reference"] == good

@@ -24,7 +24,7 @@ class Intake:
         gate: that they go to.
         timeline: of the node.
         plausibility: of the vehicle.
-        begin_anew: called when time has jumped so far that the part must begin anew.
+        on_time_jump: called when time has jumped so far that the part must be restarted.
     """
 
     def __init__(
@@ -32,10 +32,10 @@ class Intake:
         gate: TickGate,
         timeline: Timeline,
         plausibility: Plausibility,
-        begin_anew: Callable[[Jump], None],
+        on_time_jump: Callable[[Jump], None],
     ) -> None:
         self.gate, self.timeline = gate, timeline
-        self._plausibility, self._begin_anew = plausibility, begin_anew
+        self._plausibility, self._on_time_jump = plausibility, on_time_jump
         self._topics: dict[str, Topic] = {}
         self._counts: Counter[str] = Counter({UNREADABLE: 0, IMPLAUSIBLE: 0, JUMPS: 0, RESETS: 0})
         self.faults: list[UvmsError] = []
@@ -97,7 +97,7 @@ class Intake:
         if not jump.is_back and jump.after - jump.before <= KEEP:
             return
         self._counts[RESETS] += 1
-        self.news.append(f"{jump}; beginning anew")
+        self.news.append(f"{jump}; restarting")
         self.gate.reset()
         self._plausibility.reset()
-        self._begin_anew(jump)
+        self._on_time_jump(jump)

@@ -71,7 +71,7 @@ class Part(ABC):
         return None
 
     def restart(self, reason: str) -> None:
-        """Begin anew, with the same configuration: its state is not good any more.
+        """Start over with the same configuration: its state is no longer valid.
 
         Args:
             reason: in words, for whoever waits for this part.
@@ -79,7 +79,7 @@ class Part(ABC):
         return None
 
     def safe(self, tick: Tick) -> Iterable[Output]:
-        """What to put out at a tick at which the part cannot step, or made rubbish.
+        """What to put out at a tick at which the part cannot step, or its output is invalid.
 
         Nothing, by default: whoever reads its outputs then goes to its own safe state.
         """
@@ -116,12 +116,13 @@ class InProcess:
         self._counts: dict[str, dict[str, int]] = {
             role: {"refused": 0, "unsafe_outputs": 0} for role in self.order
         }
+        self._excuses = False
         self.refused = 0
         """Signals from outside that were not used."""
 
     @property
     def unsafe(self) -> int:
-        """Ticks at which a part made rubbish and its safe output was used instead."""
+        """Ticks at which the output of a part was invalid and its safe output was used instead."""
         return sum(counts["unsafe_outputs"] for counts in self._counts.values())
 
     def final_status(self, stamp: int) -> Iterator[Status]:
@@ -149,17 +150,30 @@ class InProcess:
         return len(signals) > 1 and self._plausibility.are_good(topic, signals)
 
     def admit(self, topic: Topic, signal: Any) -> None:
-        """Hand over a signal from outside, unless this vehicle cannot have it."""
+        """Hand over a signal from outside; one that this vehicle cannot have is excused."""
         if topic.name not in self._rules:
             return
-        try:
-            if self._plausibility is not None:
-                self._plausibility.admit(topic, signal)
-        except UvmsError as fault:
-            self.refused += 1
-            self._refuse(self._readers[topic.name], fault)
+        if self._is_refused(topic, signal):
+            self._excuse(topic, signal.stamp)
         else:
             self.deliver(topic, signal)
+
+    def is_usable(self, topic: Topic, signal: Any) -> bool:
+        """Whether who reads a part's output outside, as the plant does, may use it."""
+        return not self._is_refused(topic, signal, is_checked=True)
+
+    def _is_refused(self, topic: Topic, signal: Any, is_checked: bool = False) -> bool:
+        if self._plausibility is None:
+            return False
+        if is_checked and self._plausibility.follows(topic, signal):
+            return False
+        try:
+            self._plausibility.admit(topic, signal, is_checked)
+        except UvmsError as fault:
+            self.refused += 1
+            self._refuse(self._readers.get(topic.name, ()), fault)
+            return True
+        return False
 
     def _refuse(self, roles: Iterable[str], fault: UvmsError) -> None:
         self._faults.append(str(fault))
@@ -171,21 +185,42 @@ class InProcess:
         for rule in self._rules.get(topic.name, ()):
             rule.push(signal.stamp, signal)
 
+    def _excuse(self, topic: Topic, stamp: int) -> None:
+        self._excuses = True
+        for rule in self._rules[topic.name]:
+            rule.excuse(stamp)
+
     def tick(self, stamp: int) -> Iterator[tuple[str, list[Output]]]:
         """Call each part whose tick this stamp is; yields role and outputs, already delivered.
 
-        What was refused, and parts that made rubbish, are among the outputs as diagnostics.
+        What was refused, and parts whose output was invalid, are among the outputs as diagnostics.
         """
         for role, part, rules in self._parts:
             if stamp % part.every:
                 continue
-            tick = Tick(stamp, {name: rule.take(stamp) for name, rule in rules})
+            missing = self._missing(rules, stamp) if self._excuses else ()
+            tick = Tick(stamp, {name: rule.take(stamp) for name, rule in rules}, missing)
             outputs = self._step(role, part, tick)
             for topic, signal in outputs:
-                self.deliver(topic, signal)
+                self._pass_on(topic, signal)
             if self._faults:
                 outputs.append(self._diagnosis(role, stamp))
             yield role, outputs
+
+    def _pass_on(self, topic: Topic, signal: Any) -> None:
+        """Hand a part's output to its readers, which look at jumps as nodes do."""
+        rules = self._rules.get(topic.name)
+        if rules is None:
+            return
+        if self._is_refused(topic, signal, is_checked=True):
+            self._excuse(topic, signal.stamp)
+            return
+        for rule in rules:
+            rule.push(signal.stamp, signal)
+
+    @staticmethod
+    def _missing(rules: Iterable[tuple[str, Input]], stamp: int) -> tuple[str, ...]:
+        return tuple(name for name, rule in rules if rule.missing(stamp))
 
     def _step(self, role: str, part: Part, tick: Tick) -> list[Output]:
         if self._plausibility is None:
@@ -193,6 +228,8 @@ class InProcess:
         outputs, fault = safe_step(role, part, tick, self._plausibility)
         if isinstance(fault, UnsafeOutputError):
             self._counts[role]["unsafe_outputs"] += 1
+            self._faults.append(str(fault))
+        elif fault is not None and tick.missing:
             self._faults.append(str(fault))
         elif fault is not None:
             raise fault
@@ -210,8 +247,8 @@ def safe_step(
 ) -> tuple[list[Output], UvmsError | None]:
     """As `run_step`, but nothing that is not finite or not possible gets out.
 
-    A part that makes rubbish begins anew, so that it does not live on in its state, and its safe
-    output takes the place of what it made.
+    A part whose output is invalid is restarted, since its state may be the cause, and its safe
+    output takes the place of the invalid one.
 
     Returns:
         The outputs, and why they are the safe ones where they are: `UnsafeOutputError`, or the
@@ -232,7 +269,9 @@ def safe_step(
         return _possible(part.safe(tick), plausibility), fault
     for topic, signal in outputs:
         if text := plausibility.fault(topic, signal):
-            unsafe = UnsafeOutputError(f"{role} made rubbish and begins anew: {text}")
+            unsafe = UnsafeOutputError(
+                f"{role}: output is not finite or beyond its bounds; restarted: {text}"
+            )
             return _fall_back(part, tick, plausibility, unsafe), unsafe
     return outputs, None
 
@@ -261,11 +300,11 @@ def run_step(role: str, part: Part, tick: Tick) -> list[Output]:
         return list(part.step(tick))
     except UvmsError:
         raise
-    except (np.linalg.LinAlgError, OverflowError, FloatingPointError) as fault:  # of rubbish
+    except (np.linalg.LinAlgError, OverflowError, FloatingPointError) as fault:  # invalid numbers
         raise UnsafeOutputError(
-            f"{role} cannot compute its output and begins anew: {type(fault).__name__}: {fault}"
+            f"{role}: output cannot be computed; restarted: {type(fault).__name__}: {fault}"
         ) from fault
-    except Exception as fault:  # a class of the user's may raise anything
+    except (Exception, SystemExit) as fault:  # a class of the user's may raise anything
         where = traceback.extract_tb(fault.__traceback__)[-1]
         raise PluginError(
             f"{role}: its step failed at t = {to_seconds(tick.stamp):g} s:"

@@ -39,7 +39,7 @@ class Input(ABC):
         self._excused: list[int] = []
 
     def reset(self) -> None:
-        """Forget everything: time begins anew."""
+        """Forget everything: time starts over."""
         self._items.clear()
         self._excused.clear()
 
@@ -147,7 +147,7 @@ class Periodic(Input):
         self._taken = -1
 
     def reset(self) -> None:
-        """Forget everything: time begins anew."""
+        """Forget everything: time starts over."""
         super().reset()
         self._taken = -1
 
@@ -179,13 +179,39 @@ class Periodic(Input):
 
 
 class Covering(Input):
-    """A value that holds for a time (`value.end`): the newest with stamp <= tick < end."""
+    """A value that holds for a time (`value.end`): the newest with stamp <= tick < end.
+
+    A value that cannot be used excuses the ticks that it would have covered, as many as the one
+    before it did: from then on the next one is due and waited for. That does not depend on the
+    order in which the topics arrive.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._span = KEEP  # where there was no good value before
+        self._excuses: list[tuple[int, int]] = []
+
+    def reset(self) -> None:
+        """Forget everything: time starts over."""
+        super().reset()
+        self._span = KEEP
+        self._excuses.clear()
+
+    def push(self, stamp: int, value: Any) -> bool:
+        """Store a value, as any input does."""
+        self._span = value.end - stamp
+        return super().push(stamp, value)
+
+    def excuse(self, stamp: int) -> None:
+        """The value of this stamp came but cannot be used."""
+        super().excuse(stamp)
+        self._excuses = [*self._excuses[-DEPTH:], (stamp, stamp + self._span)]
 
     def complete(self, stamp: int) -> bool:
         """Whether a value covers the stamp, or one that would is excused."""
         if any(when <= stamp < value.end for when, value in self._items):
             return True
-        return any(when <= stamp for when in self._excused)
+        return any(when <= stamp < end for when, end in self._excuses)
 
     def missing(self, stamp: int) -> bool:
         """Whether the last good value ended too long ago to stand in."""
@@ -198,6 +224,8 @@ class Covering(Input):
         value = super().take(stamp)
         if self._excused and value is not None and stamp < value.end:
             self._excused = [each for each in self._excused if each > stamp]
+        if self._excuses:
+            self._excuses = [(when, end) for when, end in self._excuses if end > stamp]
         return value
 
 

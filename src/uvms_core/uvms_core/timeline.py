@@ -26,7 +26,7 @@ CONFIRMED = 3
 """Messages of one topic, each later than the one before, that make a jump of time believed."""
 SILENCE_S = 0.5
 """Wall time without any message, after which time is believed to have gone back: a lockstep plant
-that starts anew sends one message and waits for its answer."""
+that is restarted sends one message and waits for its answer."""
 LEAD_S = 5.0
 """How far a plan may lie ahead of the node's time: its stamp is that of its first point."""
 _MOST_SUSPECTS = 64
@@ -116,7 +116,7 @@ class Timeline:
         return Judged((item,))
 
     def may_be(self, stamp: int, name: str) -> bool:
-        """Whether a message of this stamp would be believed at once; for those that are rubbish,
+        """Whether a message of this stamp would be believed at once; for unreadable ones,
         which confirm nothing and are not held.
         """
         last = self._newest.get(name)

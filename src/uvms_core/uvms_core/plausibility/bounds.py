@@ -11,6 +11,15 @@ from typing import Any, get_type_hints
 import numpy as np
 
 from uvms_core import signals
+from uvms_core.plausibility.agility import agility_of
+from uvms_core.plausibility.continuity import (
+    STEP_LIMITS,
+    STEP_M,
+    STEP_M_S,
+    STEP_M_S2,
+    STEP_RAD,
+    Continuity,
+)
 from uvms_core.plausibility.rule import Bound, Rule, within
 from uvms_core.plausibility.scale import Scale, scale_of
 from uvms_core.signals import Array
@@ -31,27 +40,50 @@ COUNTLESS_RAD = 200 * np.pi
 SPECIFIC_FORCE = 20.0
 """Range of an inertial unit, in multiples of gravity: beyond what units of this class measure."""
 ASKED = 1000.0
-"""A law may ask for this many times what the actuators have, and saturates: a large error times a
-large gain. More is no number of a law."""
+"""A law may ask for a wrench of this many times all thrust: a large error times a large gain, which
+the allocator saturates. That of this project asks for a hundred times when the vehicle falls with
+ten times its mass."""
+ASKED_SUDDENLY = 300.0
+"""And for this many times more or less than a tick before: such a vehicle, and a factor of 3."""
+COMMANDED = 100.0
+"""An actuator may be sent this many times its limit by a part that leaves saturation to it."""
+SUDDENLY = 5.0
+"""Change of such a command between two ticks, in limits: from full one way to full the other is 2;
+what is far beyond makes no difference to an actuator that saturates."""
+REVERSAL = 2.2
+"""Change of a wrench that thrusters have, in all that they have: from full one way to full the
+other, and rounding."""
+EXPLAINED = 2.0
+"""Change of an observed disturbance within a tick, in weight and all thrust."""
 MEASURED = 20.0
 """A joint's measured effort against its drive's limit: impacts and friction come on top."""
 UNEXPLAINED = 1000.0
 """A disturbance against the weight and all thrust: what an observer makes of an impact."""
-ACCELERATION = 1000.0
-"""A planned acceleration, m/s^2 or rad/s^2: none of these vehicles has a hundredth of it."""
+ACCELERATION = 10.0
+"""A planned acceleration, m/s^2 or rad/s^2, that every vehicle is granted beside its own."""
 UNIT = 10.0
 """Of a quaternion, whose length `uvms_core.checks` holds to 1; wide, so that the quick test of the
 whole signal is left to the other values."""
 VARIANCE = 1e12
 """A std of a million of whatever unit: what filters write for `not known` is below it."""
-SIGMAS = 6.0
-"""An estimate may be corrected by this many std of its own uncertainty within a sample."""
-ESTIMATE_M = 0.5
+SIGMAS = 10.0
+"""An estimate may be corrected by this many std of its own uncertainty within a sample: a filter
+that began at rest in a vehicle at 4 m/s, and refused its velocities for a while, is off by nine."""
+ESTIMATE_M = 0.75
 """And by this without any."""
+ESTIMATE = 0.05
+"""The same for velocities and joint angles, m/s, rad/s and rad."""
+ROUNDING = 1e-3
+"""N and N m along axes in which the thrusters have nothing."""
 UNSEEN_M_S = 2.0
 """And by this speed beside its own: the vehicle accelerates, and estimates of a speed are wrong."""
+UNSEEN_RAD_S = 2.0
+"""The same for a rate of turn."""
 NOISES = 10.0
 """Noise of a sample in std: none in a billion is beyond it, with room for what a file omits."""
+WORSE = 5.0
+"""A sensor may be this many times noisier than its file says where a jump is all that tells: two
+samples of such a sensor differ by more than `NOISES` of its std on every day."""
 ANYTHING = 1e12
 """Bound of what nothing is known about: values of another package's sensor."""
 
@@ -70,20 +102,52 @@ def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
     imu = vehicle.sensors.imu
     noise = NOISES * np.radians(max(imu.roll_pitch_noise_deg, imu.heading_noise_deg))
     force = SPECIFIC_FORCE * vehicle.environment.gravity_m_s2
+    nu_dot, lever = agility_of(vehicle).nu_dot, float(np.linalg.norm(imu.position_m))
+    # From the greatest one way to the greatest the other: an impact takes no time.
+    felt = 2.0 * (nu_dot[:3] + lever * float(np.max(nu_dot[3:])))
+    felt = felt + WORSE * NOISES * imu.accelerometer_noise_m_s2
     return Rule(
         (
-            _quaternion("quaternion", scale, noise),
-            within("angular_velocity", scale.rate, 3, "rad/s"),
-            within("linear_acceleration", force, 3, "m/s^2"),
+            _quaternion("quaternion", noise),
+            within(
+                "angular_velocity",
+                scale.rate,
+                3,
+                "rad/s",
+                rate=agility_of(vehicle).nu_dot[3:],
+                slack=WORSE * NOISES * np.radians(imu.gyro_noise_deg_s),
+            ),
+            within("linear_acceleration", force, 3, "m/s^2", rate=0.0, slack=felt),
         ),
         quaternion="quaternion",
+        extra_slack=_own_turn,
     )
+
+
+def _own_turn(imu: signals.ImuSample, elapsed_s: float) -> Array:
+    """By how much the next sample may differ (10,): it turns, and may stop; so does gravity."""
+    slack = np.zeros(4 + 3 + 3)
+    rate = float(np.linalg.norm(imu.angular_velocity))
+    slack[:4] = 0.5 * rate * elapsed_s
+    slack[4:7] = rate
+    slack[7:] = float(np.linalg.norm(imu.linear_acceleration)) * rate * elapsed_s
+    return slack
 
 
 def _dvl(vehicle: Vehicle, scale: Scale) -> Rule:
     """The transducer moves with the hull: its lever times the rate comes on top."""
-    speed = scale.speed + scale.rate * float(np.linalg.norm(vehicle.sensors.dvl.position_m))
-    return Rule((within("velocity", speed, 3, "m/s"),))
+    dvl, nu_dot = vehicle.sensors.dvl, agility_of(vehicle).nu_dot
+    lever = float(np.linalg.norm(dvl.position_m))
+    speed = scale.speed + scale.rate * lever
+    rate = nu_dot[:3] + float(np.max(nu_dot[3:])) * lever
+    slack = WORSE * NOISES * dvl.noise_m_s
+    bound = within("velocity", speed, 3, "m/s", rate=rate, slack=slack)
+    return Rule((bound,), extra_slack=_own_speed)
+
+
+def _own_speed(dvl: signals.DvlSample, elapsed_s: float) -> Array:
+    """By how much the next sample may differ (3,): what moves may stop, or turn about."""
+    return np.full(3, float(np.linalg.norm(dvl.velocity)))
 
 
 def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
@@ -113,12 +177,29 @@ def _joints(vehicle: Vehicle, scale: Scale) -> Rule:
     rate_noise = np.radians(NOISES * encoders.rate_noise_deg_s)
     low, high = _angles(vehicle)
     rate = scale.joint_rate + rate_noise
+    slack = WORSE * noise + ESTIMATE  # beside its motion
+    q_ddot = agility_of(vehicle).q_ddot
+
+    def own_motion(joints: signals.JointStates, elapsed_s: float) -> Array:
+        """By how much the next sample may differ (3 n,): it moves, and a stop throws it back."""
+        speed = float(np.linalg.norm(joints.velocity))
+        moved = speed * elapsed_s + 0.5 * q_ddot * elapsed_s**2
+        return np.concatenate([moved, np.full(n, 2.0 * speed), np.zeros(n)])
+
     return Rule(
         (
-            Bound("position", low - noise, high + noise, n, "rad", rate=rate, slack=noise + 0.05),
-            within("velocity", rate, n, "rad/s"),
+            Bound("position", low - noise, high + noise, n, "rad", rate=0.0, slack=slack),
+            within(
+                "velocity",
+                rate,
+                n,
+                "rad/s",
+                rate=q_ddot,
+                slack=WORSE * rate_noise,
+            ),
             within("effort", MEASURED * scale.effort, n, "N m"),
-        )
+        ),
+        extra_slack=own_motion,
     )
 
 
@@ -128,8 +209,8 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule(
         (
             within("position", place, 3, "m", rate=UNSEEN_M_S, slack=ESTIMATE_M),
-            _quaternion("quaternion", scale, 0.0),
-            within("nu", rates, 6, "m/s or rad/s"),
+            _quaternion("quaternion", 0.0),
+            within("nu", rates, 6, "m/s or rad/s", rate=agility_of(vehicle).nu_dot, slack=ESTIMATE),
             _covariance("pose_covariance", 6),
             _covariance("twist_covariance", 6),
         ),
@@ -139,50 +220,81 @@ def _odometry(vehicle: Vehicle, scale: Scale) -> Rule:
 
 
 def _own_motion(odometry: signals.Odometry, elapsed_s: float) -> Array:
-    """By how much the next estimate may differ (85,): its own speed, and its own uncertainty."""
+    """By how much the next estimate may differ (85,): its uncertainty, and its speed may stop."""
     slack = np.zeros(3 + 4 + 6 + 36 + 36)
     std = np.sqrt(np.maximum(odometry.pose_covariance.diagonal(), 0.0))
     speed = float(np.linalg.norm(odometry.nu[:3]))
     slack[:3] = SIGMAS * std[:3] + speed * elapsed_s
-    slack[3:7] = SIGMAS * 0.5 * float(np.max(std[3:]))
+    turn = float(np.linalg.norm(odometry.nu[3:]))
+    slack[3:7] = 0.5 * (SIGMAS * float(np.max(std[3:])) + turn * elapsed_s)
+    rates = np.sqrt(np.maximum(odometry.twist_covariance.diagonal(), 0.0))
+    slack[7:10] = SIGMAS * rates[:3] + speed
+    slack[10:13] = SIGMAS * rates[3:] + turn
     return slack
 
 
 def _command(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("wrench", _wrench(ASKED * scale.force, scale), 6, "N or N m"),))
+    force = _wrench(scale.force, scale)
+    bound = within("wrench", ASKED * force, 6, "N or N m", rate=0.0, slack=ASKED_SUDDENLY * force)
+    return Rule((bound,))
 
 
 def _achieved(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("wrench", _wrench(2.0 * scale.force, scale), 6, "N or N m"),))
+    force, slack = _wrench(2.0 * scale.force, scale), REVERSAL * agility_of(vehicle).wrench
+    return Rule((within("wrench", force, 6, "N or N m", rate=0.0, slack=slack + ROUNDING),))
 
 
 def _disturbance(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("wrench", _load(scale), 6, "N or N m"),))
+    load = _wrench(scale.force + scale.weight, scale)
+    bound = within("wrench", UNEXPLAINED * load, 6, "N or N m", rate=0.0, slack=EXPLAINED * load)
+    return Rule((bound,))
 
 
 def _joint_command(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("effort", ASKED * scale.effort, vehicle.n_joints, "N m"),))
+    slack = SUDDENLY * scale.effort
+    bound = within(
+        "effort", COMMANDED * scale.effort, vehicle.n_joints, "N m", rate=0.0, slack=slack
+    )
+    return Rule((bound,))
 
 
 def _thruster_command(vehicle: Vehicle, scale: Scale) -> Rule:
-    return Rule((within("thrust", ASKED * scale.force, vehicle.n_thrusters, "N"),))
+    thrust = agility_of(vehicle).thrust
+    slack = SUDDENLY * thrust
+    bound = within("thrust", COMMANDED * thrust, thrust.size, "N", rate=0.0, slack=slack)
+    return Rule((bound,))
 
 
 def _reference(vehicle: Vehicle, scale: Scale) -> Rule:
     low, high = _angles(vehicle)
     place = np.array([MAP_M, MAP_M, DEEPEST_M])
     rates = np.array([scale.speed] * 3 + [scale.rate] * 3)
+    agility = agility_of(vehicle)
+    nu_dot = np.maximum(agility.nu_dot, ACCELERATION)
+    limits = np.radians([joint.rate_limit_deg_s for joint in vehicle.arm.joints])
+    strengths = np.radians([joint.acceleration_limit_deg_s2 for joint in vehicle.arm.joints])
+    steps: dict[str, Array | float] = {
+        "position": STEP_M,
+        "quaternion": 0.5 * STEP_RAD,
+        "nu": STEP_M_S,
+        "nu_dot": STEP_M_S2,
+        "q": STEP_RAD,
+        "q_dot": STEP_LIMITS * limits,
+        "q_ddot": STEP_LIMITS * strengths,
+        "end_effector": STEP_M + scale.size * STEP_RAD,
+    }
     return Rule(
         (
             within("position", place, 0, "m"),
             within("nu", rates, 0, "m/s or rad/s"),
-            within("nu_dot", ACCELERATION, 0, "m/s^2 or rad/s^2"),
+            within("nu_dot", nu_dot, 0, "m/s^2 or rad/s^2"),
             Bound("q", low, high, 0, "rad"),
             within("q_dot", scale.joint_rate, 0, "rad/s"),
-            within("q_ddot", ACCELERATION, 0, "rad/s^2"),
+            within("q_ddot", agility.q_ddot, 0, "rad/s^2"),
             within("end_effector", place + scale.size, 0, "m"),
             Bound("times", 0.0, MAP_M, 0, "s"),
-        )
+        ),
+        step_fault=Continuity(steps).fault,
     )
 
 
@@ -196,9 +308,9 @@ def _of_anything(signal: type | None) -> Rule:
 _NOT_NUMBERS = ("saturated",)
 
 
-def _quaternion(field: str, scale: Scale, noise: float) -> Bound:
+def _quaternion(field: str, noise: float) -> Bound:
     """Components change by half the angle; the slack is for the estimate's corrections."""
-    return within(field, UNIT, 4, "", rate=0.5 * scale.rate, slack=0.1 + noise)
+    return within(field, UNIT, 4, "", rate=0.5 * UNSEEN_RAD_S, slack=0.1 + noise)
 
 
 def _covariance(field: str, size: int) -> Bound:
@@ -215,10 +327,6 @@ def _angles(vehicle: Vehicle) -> tuple[Array, Array]:
 def _wrench(force: float, scale: Scale) -> Array:
     """A force along each axis, and its moment at the vehicle's size."""
     return force * np.array([1.0] * 3 + [scale.size] * 3)
-
-
-def _load(scale: Scale) -> Array:
-    return _wrench(UNEXPLAINED * (scale.force + scale.weight), scale)
 
 
 _Maker = Callable[[Vehicle, Scale], Rule]

@@ -8,6 +8,7 @@ from uvms_core.errors import ImplausibleError, SignalError
 from uvms_core.plausibility.bounds import bounds_of
 from uvms_core.plausibility.rule import Rule
 from uvms_core.plausibility.watch import Watch
+from uvms_core.signals import Array
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
 
@@ -19,14 +20,15 @@ class Plausibility:
         self._vehicle = vehicle
         self._rules: dict[str, Rule] = {}
         self._watches: dict[str, Watch] = {}
+        self._checked: dict[str, tuple[Any, Array]] = {}  # newest output, and its values
 
     def reset(self) -> None:
-        """Forget all samples: time or place begins anew."""
+        """Forget all samples: time or place starts over."""
         for watch in self._watches.values():
             watch.reset()
 
-    def admit(self, topic: Topic, signal: Any) -> str | None:
-        """Take a sample that comes in.
+    def admit(self, topic: Topic, signal: Any, is_checked: bool = False) -> str | None:
+        """Take a sample that comes in; of one that is checked (`fault`) only its jump matters.
 
         Returns:
             What happened, in words, where a jump is taken for real; None as a rule.
@@ -37,13 +39,23 @@ class Plausibility:
         watch = self._watches.get(topic.name)
         if watch is None:
             watch = self._watches[topic.name] = Watch(self._rule(topic))
-        fault = watch.fault(signal.stamp, signal)
+        fault = watch.fault(signal.stamp, signal, is_checked)
         if fault is not None:
             raise ImplausibleError(f"{topic.name}: {fault}")
         if watch.news is None:
             return None
         news, watch.news = watch.news, None
         return f"{topic.name}: {news}"
+
+    def follows(self, topic: Topic, signal: Any) -> bool:
+        """Take a signal that `fault` has just passed, if its jump is certainly possible.
+
+        Quick; where it is False, `admit` decides.
+        """
+        watch, checked = self._watches.get(topic.name), self._checked.get(topic.name)
+        if watch is None or checked is None or checked[0] is not signal:
+            return False
+        return watch.follows(signal.stamp, checked[1], signal)
 
     def are_good(self, topic: Topic, signals: Sequence[Any]) -> bool:
         """Take several samples in a row if all are certainly good; else none of them."""
@@ -59,7 +71,12 @@ class Plausibility:
             return str(fault)
         if not rule.bounds:
             return None
-        if rule.is_possible(rule.flat(signal)) if rule.is_flat else rule.are_possible(signal):
+        if rule.is_flat:
+            x = rule.flat(signal)
+            self._checked[topic.name] = signal, x
+            if rule.is_possible(x):
+                return None
+        elif rule.are_possible(signal):
             return None
         text = rule.explain(signal)
         return text and f"{topic.name}: {text}"

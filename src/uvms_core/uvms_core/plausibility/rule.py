@@ -61,6 +61,7 @@ class Rule:
         extra_slack: by how much the next sample, so many seconds later, may jump beyond the slack
             of the bounds, by value: a sample's own uncertainty. Called only where a jump is too
             large without it.
+        step_fault: why a signal of no fixed size cannot follow another one, in words.
     """
 
     def __init__(
@@ -68,9 +69,12 @@ class Rule:
         bounds: Sequence[Bound],
         quaternion: str = "",
         extra_slack: Callable[[Any, float], Array] | None = None,
+        step_fault: Callable[[Any, Any], str | None] | None = None,
     ) -> None:
         self.bounds = tuple(bounds)
+        self.step_fault = step_fault
         self.extra_slack = extra_slack
+        self.jumps = step_fault is not None
         self.is_flat = all(bound.size for bound in bounds) and bool(bounds)
         if not self.is_flat:
             self._by_field = [

@@ -20,6 +20,8 @@ JOINT_RATES = 20.0
 """Factor on a joint's rate limit, which is the drive's: a joint that is pushed turns faster."""
 JOINT_RATE_RAD_S = 30.0
 """Granted to every joint: what a light last link gets to when it is let go."""
+FASTEST_JOINT_RAD_S = 100.0
+"""Granted to none: a geared drive does not turn a thousand times a minute."""
 
 
 @dataclass(frozen=True)
@@ -43,17 +45,22 @@ def scale_of(vehicle: Vehicle) -> Scale:
     force = sum(thruster.limit_n for thruster in vehicle.thrusters)
     size = _size(vehicle)
     load = force + OVERWEIGHT * mass * gravity
-    linear = _diagonal(hull.linear_damping), _diagonal(hull.quadratic_damping)
+    linear = diagonal(hull.linear_damping), diagonal(hull.quadratic_damping)
     speed = TERMINAL * float(np.max(_terminal(load, linear[0][:3], linear[1][:3])))
     rate = TERMINAL * float(np.max(_terminal(load * size, linear[0][3:], linear[1][3:])))
     limits = np.radians([joint.rate_limit_deg_s for joint in joints])
+    # A drive at full torque against its friction alone, with nothing beyond it.
+    with np.errstate(divide="ignore"):
+        friction = np.array([joint.viscous_friction_nm_s for joint in joints])
+        free = np.array([joint.effort_limit_nm for joint in joints]) / friction
+    fastest = FASTEST_JOINT_RAD_S
     return Scale(
         speed=float(np.clip(speed, *SPEEDS_M_S)),
         rate=float(np.clip(rate, *RATES_RAD_S)),
         size=size,
         force=force,
         weight=mass * gravity,
-        joint_rate=np.maximum(JOINT_RATES * limits, JOINT_RATE_RAD_S),
+        joint_rate=np.clip(np.maximum(JOINT_RATES * limits, free), JOINT_RATE_RAD_S, fastest),
         effort=np.array([joint.effort_limit_nm for joint in joints]),
     )
 
@@ -66,8 +73,9 @@ def _terminal(load: float, linear: Array, quadratic: Array) -> Array:
     return np.minimum(np.nan_to_num(square, nan=np.inf), np.nan_to_num(line, nan=np.inf))
 
 
-def _diagonal(damping: object) -> Array:
-    values = np.abs(np.asarray(damping, dtype=float))
+def diagonal(matrix: object) -> Array:
+    """Magnitudes of a matrix's diagonal, which a file may give alone."""
+    values = np.abs(np.asarray(matrix, dtype=float))
     return values.diagonal() if values.ndim == 2 else values
 
 
@@ -75,6 +83,11 @@ def _size(vehicle: Vehicle) -> float:
     """Reach of thrusters, sensors and the stretched arm; a metre at least."""
     places = [thruster.position_m for thruster in vehicle.thrusters]
     places += [sensor.position_m for sensor in vehicle.sensors.mounted.values()]
+    return max(1.0, reach_of(vehicle), *(float(np.linalg.norm(place)) for place in places))
+
+
+def reach_of(vehicle: Vehicle) -> float:
+    """Distance of the stretched arm's tool from the body origin at most, m."""
     reach = float(np.linalg.norm(vehicle.arm.base.position_m))
     reach += float(np.linalg.norm(vehicle.arm.tool.position_m))
     for joint in vehicle.arm.joints:
@@ -82,4 +95,4 @@ def _size(vehicle: Vehicle) -> float:
             reach += float(np.linalg.norm(joint.origin.position_m))
         else:
             reach += float(np.hypot(joint.a_m or 0.0, joint.d_m or 0.0))
-    return max(1.0, reach, *(float(np.linalg.norm(place)) for place in places))
+    return reach

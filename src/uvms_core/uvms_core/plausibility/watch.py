@@ -17,6 +17,8 @@ of control ticks, half as long as the last good value is kept. An outlier is one
 what stays there is where the vehicle is, and a check that refuses it for ever would blind the
 node."""
 
+_NONE = np.zeros(0)
+
 
 class Watch:
     """Looks at the samples of one topic in the order of their stamps."""
@@ -33,13 +35,20 @@ class Watch:
         self.news: str | None = None
         """Said once, when a jump was taken for real."""
 
-    def fault(self, stamp: int, signal: Any) -> str | None:
-        """Why a sample cannot be used, in words; None where it can, which makes it the last one."""
+    def fault(self, stamp: int, signal: Any, is_checked: bool = False) -> str | None:
+        """Why a sample cannot be used, in words; None where it can, which makes it the last one.
+
+        Where it `is_checked`, its values are known to be within their bounds.
+        """
         rule = self._rule
+        if is_checked and not rule.jumps:
+            return None
         if not rule.is_flat:
-            return None if rule.are_possible(signal) else rule.explain(signal)
+            if not is_checked and not rule.are_possible(signal) and (text := rule.explain(signal)):
+                return text
+            return self._step(stamp, signal) if rule.jumps else None
         x = rule.flat(signal)
-        if not rule.is_possible(x):
+        if not is_checked and not rule.is_possible(x):
             return rule.explain(signal)
         if not rule.jumps:
             return None
@@ -54,6 +63,28 @@ class Watch:
         if not y.dot(y) <= 1.0:
             text = self._jump(last, sample)
             if text is not None and not self._is_confirmed(sample, text):
+                return text
+        self._last, self._refused = sample, None
+        return None
+
+    def follows(self, stamp: int, x: Array, signal: Any) -> bool:
+        """Whether values within their bounds certainly follow the last ones; takes them then."""
+        last = self._last
+        if last is None or stamp <= last[0]:
+            return False
+        y = (x - last[1]) * self._rule.inverse(stamp - last[0])
+        if not y.dot(y) <= 1.0:
+            return False
+        self._last, self._refused = (stamp, x, signal), None
+        return True
+
+    def _step(self, stamp: int, signal: Any) -> str | None:
+        """As `fault`, for a signal of no fixed size within its bounds."""
+        sample, last = (stamp, _NONE, signal), self._last
+        if last is not None and stamp <= last[0]:
+            return None
+        if last is not None and (text := self._jump(last, sample)) is not None:
+            if not self._is_confirmed(sample, text):
                 return text
         self._last, self._refused = sample, None
         return None
@@ -92,6 +123,8 @@ class Watch:
         rule, elapsed = self._rule, now[0] - before[0]
         if elapsed <= 0:
             return None
+        if rule.step_fault is not None:
+            return rule.step_fault(before[2], now[2])
         step, change = now[1] - before[1], rule.allowed(elapsed)
         if rule.turn is not None and now[1][rule.turn].dot(before[1][rule.turn]) < 0.0:
             step[rule.turn] = -now[1][rule.turn] - before[1][rule.turn]

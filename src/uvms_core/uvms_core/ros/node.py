@@ -35,8 +35,8 @@ from uvms_core.vehicle import Vehicle, load_vehicle
 C = TypeVar("C", bound=Config)
 DIAGNOSTICS_PERIOD = NANOSECONDS
 COMPLAINTS_S = 0.2
-"""Wall time between two reports of inputs that are refused, s: a flood of rubbish must not become
-one of diagnostics. Every one is counted."""
+"""Wall time between two reports of inputs that are refused, s: a flood of invalid messages must not
+become one of diagnostics. Every one is counted."""
 
 
 def qos_profile(qos: Qos) -> QoSProfile:
@@ -130,7 +130,7 @@ class UvmsNode(Node):
         gate = TickGate(by_name, trigger.name, self.lockstep, in_loop, every)
         plans = [topic.name for topic, rule in inputs.items() if isinstance(rule, Covering)]
         timeline = Timeline(self.period, plans)
-        self._intake = Intake(gate, timeline, self.plausibility, self.begin_anew)
+        self._intake = Intake(gate, timeline, self.plausibility, self.on_time_jump)
         self._on_tick = on_tick
         for topic in inputs:
             self._subscribe(topic, partial(self._receive, self._intake, topic))
@@ -222,7 +222,7 @@ class UvmsNode(Node):
             for text in news:
                 self.complain(intake.timeline.now or 0, diagnostics.WARN, text)
 
-    def begin_anew(self, jump: Jump) -> None:
+    def on_time_jump(self, jump: Jump) -> None:
         """Time has jumped; a subclass with a state forgets it."""
 
     def more_counts(self) -> dict[str, int]:

@@ -15,8 +15,8 @@ from uvms_core.timeline import Jump
 class PartNode(UvmsNode):
     """Runs a part on the topics that it declares.
 
-    Nothing that is not finite or not possible is ever published: where the part makes such a thing,
-    it begins anew and its safe output is published instead.
+    Nothing that is not finite or not possible is ever published: where its output is such,
+    the part is restarted and its safe output is published instead.
     """
 
     def __init__(self, **options: Any) -> None:
@@ -55,10 +55,10 @@ class PartNode(UvmsNode):
             **self.part.status(),
         )
 
-    def begin_anew(self, jump: Jump) -> None:
-        """Time has jumped: the part begins anew."""
+    def on_time_jump(self, jump: Jump) -> None:
+        """Time has jumped: the part is restarted."""
         self.part.restart(str(jump))
 
     def more_counts(self) -> dict[str, int]:
-        """Ticks at which the part made rubbish."""
+        """Ticks at which the output of the part was invalid."""
         return {"unsafe_outputs": self.unsafe_outputs}

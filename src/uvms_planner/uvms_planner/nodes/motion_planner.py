@@ -89,9 +89,9 @@ class MotionPlannerNode(PartNode):
         self.part.planner.cancel()
         return CancelResponse.ACCEPT
 
-    def begin_anew(self, jump: Jump) -> None:
+    def on_time_jump(self, jump: Jump) -> None:
         """Time has jumped: a goal in progress is aborted with that reason."""
-        super().begin_anew(jump)
+        super().on_time_jump(jump)
         self._stamp = jump.after
 
     async def _execute(self, handle: ServerGoalHandle) -> Any:
