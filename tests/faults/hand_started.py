@@ -29,7 +29,7 @@ class Ear(Node):
     def __init__(self) -> None:
         super().__init__("ear")
         self.heard: dict[str, list[tuple[float, Any]]] = {}
-        self.rubbish: list[str] = []
+        self.invalid: list[str] = []
         self.last: dict[str, bytes] = {}
         self.trusting = True
         self._mouths: dict[str, Any] = {}
@@ -49,7 +49,7 @@ class Ear(Node):
             try:
                 heard = from_message(topic, codec(topic.type).decode(data))
             except UvmsError as fault:
-                self.rubbish.append(str(fault))
+                self.invalid.append(str(fault))
                 return
             self.last[topic.name] = data
             self.heard.setdefault(topic.name, []).append((time.monotonic(), heard))

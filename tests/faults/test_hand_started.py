@@ -41,7 +41,7 @@ def test_any_node_that_is_killed_rejoins_and_works(tmp_path, saw):
             estimate = graph.ear.heard[topics.ODOMETRY.name][-1][1]
             assert np.linalg.norm(truth.position - estimate.position) < 2.0, role
             assert graph.alive()
-        assert not graph.ear.rubbish
+        assert not graph.ear.invalid
     assert worst < REJOIN_S + 1.0  # a second of it is the second that must have been good
     saw("each node killed for 2 s on real DDS", f"all rejoin and work within {worst:.1f} s", "5")
 
@@ -56,7 +56,7 @@ def test_a_plant_that_is_started_again_resets_the_graph(tmp_path, saw):
         graph.until(lambda: _begins_anew(graph), 60.0)
         again = time.monotonic()
         took = graph.until(lambda: graph.moves(again), 20.0)
-        assert not graph.ear.rubbish
+        assert not graph.ear.invalid
         said = [
             s for _, s in graph.ear.heard[topics.DIAGNOSTICS.name] if "time went back" in s.message
         ]

@@ -364,7 +364,7 @@ def with_statuses(source, target, *statuses):
 @pytest.mark.parametrize(
     ("values", "word", "says"),
     [
-        ({"unsafe_outputs": 1}, "given up", "controller made rubbish in 1 ticks"),
+        ({"unsafe_outputs": 1}, "given up", "controller made invalid in 1 ticks"),
         ({"resets": 1}, "invalid", "controller began anew 1 times, since time had jumped"),
         ({"refused": 6}, "completed", ""),  # of 121 ticks: 5 %
         ({"refused": 7}, "invalid", "controller refused 7 inputs in 121 ticks (bound 5%)"),
@@ -404,7 +404,7 @@ def test_a_law_that_makes_rubbish_in_process_is_given_up(tmp_path, saw):
     setting = f"control.law={__name__}:Often"
     _, summary = simulated(tmp_path / "run", "hover", setting, duration_s=DURATION_S)
     assert summary["outcome"] == "given up"
-    reason = "controller made rubbish in 48 ticks; its safe output was used instead"
+    reason = "controller made invalid in 48 ticks; its safe output was used instead"
     assert summary["reasons"][0] == reason
     assert summary["node_counters"]["controller"]["unsafe_outputs"] == 48
     saw("a law that returns NaN in 40 % of the ticks", f"given up: {reason}")

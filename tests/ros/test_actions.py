@@ -10,9 +10,9 @@ from in_process import graph_of, spin_until
 
 from uvms_bringup.errors import RunError
 from uvms_bringup.pace import Pace
-from uvms_bringup.ros.company import make_node
 from uvms_bringup.ros.conductor import Conductor
 from uvms_bringup.ros.parameter_file import node_parameters
+from uvms_bringup.ros.run_nodes import make_node
 from uvms_bringup.scenario import load_scenario
 from uvms_bringup.session import vehicle_file
 from uvms_core.ros.spin import Spinner

@@ -133,10 +133,10 @@ def test_a_late_stream_is_not_time_that_goes_back():
 @given(
     st.lists(st.tuples(st.sampled_from("ab"), st.integers(-(2**31) * S, 2**31 * S)), max_size=60)
 )
-def test_whatever_comes_good_input_is_heard_again_within_a_second(rubbish):
+def test_whatever_comes_good_input_is_heard_again_within_a_second(invalid):
     run = Run()
     run.ticks(100 * S, 5)
-    for name, stamp in rubbish:
+    for name, stamp in invalid:
         run.say(name, stamp)
     run.ticks(101 * S, 20)
     run.through.clear()

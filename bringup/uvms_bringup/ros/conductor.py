@@ -15,7 +15,7 @@ from unique_identifier_msgs.msg import UUID
 
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.acknowledge import Acknowledgement
-from uvms_bringup.ros.census import CONDUCTOR, DISCOVERY_S, REST_S, Census
+from uvms_bringup.ros.graph_watch import CONDUCTOR, DISCOVERY_S, REST_S, GraphWatch
 from uvms_bringup.ros.losses import Losses
 from uvms_bringup.ros.recorder import Recorder, Write
 from uvms_bringup.ros.state_publisher import StateBroadcaster
@@ -84,7 +84,7 @@ class Conductor(Node):
     ) -> None:
         super().__init__(CONDUCTOR, **options)
         self._graph, self._foreign, self._patient = graph, foreign, bool(absent)
-        self.census = Census(self, graph, absent)
+        self.graph_watch = GraphWatch(self, graph, absent)
         self._joint_names = joint_names
         self.recorder = Recorder(self, write, recorded)
         self._watch = watch
@@ -120,7 +120,7 @@ class Conductor(Node):
         )
 
     def check_alone(self, spinner: Spinner, others: bool) -> None:
-        """Look whether the graph is empty, as `Census.check_alone` says.
+        """Look whether the graph is empty, as `GraphWatch.check_alone` says.
 
         `others`: whether there may be somebody in the domain, whom to find takes time.
         """
@@ -129,9 +129,9 @@ class Conductor(Node):
             self._watch()
             self._check_stopped(spinner)
             spinner.spin_once(0.05)
-            if self.census.sees_others():  # the rest of them will be found soon
+            if self.graph_watch.sees_others():  # the rest of them will be found soon
                 found = min(found, time.monotonic() + REST_S)
-        self.census.check_alone()
+        self.graph_watch.check_alone()
 
     @property
     def stamp(self) -> int:
@@ -142,7 +142,7 @@ class Conductor(Node):
         """Bring the run to its first tick, send the goal and start time."""
         self.recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
-        self.census.check_alone_with_nodes()
+        self.graph_watch.check_alone_with_nodes()
         self._await(
             spinner, self.losses.begun, ANSWER_PATIENCE_S, lambda: "what the nodes have sent so far"
         )

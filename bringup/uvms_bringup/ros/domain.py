@@ -2,7 +2,7 @@
 
 Runs of this machine tell one another by a lock on a file for each domain. Whoever else is in the
 domain is seen by the port that every participant of DDS opens there, and in the graph
-(`uvms_bringup.ros.census`).
+(`uvms_bringup.ros.graph_watch`).
 """
 
 import os

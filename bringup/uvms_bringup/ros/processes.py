@@ -79,9 +79,9 @@ class NodeProcesses:
     def check(self) -> None:
         """Raise RunError if a node has died, with the end of its output."""
         for node in self.dead():
-            raise RunError(self.obituary(node))
+            raise RunError(self.exit_report(node))
 
-    def obituary(self, node: str) -> str:
+    def exit_report(self, node: str) -> str:
         """How a node ended, with the end of its output."""
         code = self._processes[node].returncode
         tail = "\n".join(self.log_of(node).read_text(errors="replace").splitlines()[-8:])
@@ -94,7 +94,7 @@ class NodeProcesses:
             RunError: it died soon after its start.
         """
         if time.monotonic() - self._started[node] < LEAST_LIFE_S:
-            raise RunError(f"{self.obituary(node)}\nIt died soon after its start")
+            raise RunError(f"{self.exit_report(node)}\nIt died soon after its start")
         _close_input(self._processes[node])
         self.start(node, self._commands[node])
         _let_in(self._processes[node])

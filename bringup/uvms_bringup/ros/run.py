@@ -13,13 +13,13 @@ from uvms_bringup.ending import Ending
 from uvms_bringup.errors import RunError
 from uvms_bringup.pace import Pace
 from uvms_bringup.ros.acknowledge import window_for
-from uvms_bringup.ros.company import Company, ComposedNodes, SeparateNodes
 from uvms_bringup.ros.conductor import Conductor
 from uvms_bringup.ros.domain import claim_domain, may_have_others
 from uvms_bringup.ros.parameter_file import node_parameters
+from uvms_bringup.ros.plant_watch import PlantWatch
 from uvms_bringup.ros.processes import environment
-from uvms_bringup.ros.pulse import Pulse
 from uvms_bringup.ros.recorder import Write
+from uvms_bringup.ros.run_nodes import ComposedNodes, RunNodes, SeparateNodes
 from uvms_bringup.scenario import Scenario
 from uvms_bringup.stopped import Stopped
 from uvms_core import registry, topics
@@ -88,23 +88,23 @@ class GraphRun:
                 claim.release()
 
     def _with_nodes(self, values: dict[str, str], foreign: frozenset[str], others: bool) -> None:
-        company = self._company(values)
+        nodes = self._run_nodes(values)
         try:
-            conductor = self._conductor(company, foreign)
+            conductor = self._conductor(nodes, foreign)
             spinner = Spinner([conductor])
             try:
-                self._conduct(company, conductor, spinner, others)
+                self._conduct(nodes, conductor, spinner, others)
             finally:
                 self._take_stock(conductor, spinner)
-                company.stop()
+                nodes.stop()
                 spinner.shutdown()
         finally:
-            company.stop()
+            nodes.stop()
 
-    def _conductor(self, company: Company, foreign: frozenset[str]) -> Conductor:
+    def _conductor(self, nodes: RunNodes, foreign: frozenset[str]) -> Conductor:
         conductor = Conductor(
             self.write,
-            lambda: self._watch(company, conductor),
+            lambda: self._watch(nodes, conductor),
             self.vehicle.joint_names,
             (*topics.of(self.vehicle), topics.ROSOUT),
             topics.nodes(self.vehicle),
@@ -114,7 +114,7 @@ class GraphRun:
         )
         return conductor
 
-    def _company(self, values: dict[str, str]) -> Company:
+    def _run_nodes(self, values: dict[str, str]) -> RunNodes:
         parameters = node_parameters(
             self.scenario, self.folder / "vehicle.yaml", self.pace, self.holder.run_id
         )
@@ -141,20 +141,20 @@ class GraphRun:
         return window_for(self.vehicle, self._period)
 
     def _conduct(
-        self, company: Company, conductor: Conductor, spinner: Spinner, others: bool
+        self, nodes: RunNodes, conductor: Conductor, spinner: Spinner, others: bool
     ) -> None:
         conductor.check_alone(spinner, others)
         conductor.broadcast(self.vehicle, self._in_lockstep)
         if self._in_lockstep:
             conductor.acknowledge(self._period, self._window)
-        spinner.add(company.enter())
+        spinner.add(nodes.enter())
         conductor.conduct(spinner, self.goal)
-        pulse = Pulse(conductor, conductor.recorder)
+        plant_watch = PlantWatch(conductor, conductor.recorder)
         end = to_nanoseconds(self.scenario.duration_s)
 
         def look() -> bool:
-            self._watch(company, conductor)
-            pulse.check()
+            self._watch(nodes, conductor)
+            plant_watch.check()
             self.progress(conductor.stamp, conductor.progress())
             return conductor.arrived(end)
 
@@ -162,10 +162,10 @@ class GraphRun:
         if spinner.signal:
             raise Stopped(spinner.signal)
 
-    def _watch(self, company: Company, conductor: Conductor) -> None:
+    def _watch(self, nodes: RunNodes, conductor: Conductor) -> None:
         """Notice deaths and intruders; raise where the run cannot go on."""
-        for role, how in company.replace_the_dead():
-            conductor.census.forgive(role)
+        for role, how in nodes.respawn_dead():
+            conductor.graph_watch.expect_again(role)
             conductor.losses.restart(role)
             when = to_seconds(conductor.stamp)
             self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
@@ -175,13 +175,13 @@ class GraphRun:
         if conductor.recorder.set_back is not None:
             before, after = map(to_seconds, conductor.recorder.set_back)
             text = f"somebody set /clock back from {before:.2f} s to {after:.2f} s"
-            self.ending.foreign = (*conductor.census.foreign, text)
+            self.ending.foreign = (*conductor.graph_watch.foreign, text)
             raise ForeignError(text)
-        if conductor.stamp and conductor.census.look():
-            self.ending.foreign = conductor.census.foreign
+        if conductor.stamp and conductor.graph_watch.look():
+            self.ending.foreign = conductor.graph_watch.foreign
             raise ForeignError(
-                f"somebody else took part: {'; '.join(conductor.census.foreign)}. End whoever does"
-                " not belong, or give the run a ROS_DOMAIN_ID of its own"
+                f"somebody else took part: {'; '.join(self.ending.foreign)}. End whoever does not"
+                " belong, or give the run a ROS_DOMAIN_ID of its own"
             )
 
     def _take_stock(self, conductor: Conductor, spinner: Spinner) -> None:

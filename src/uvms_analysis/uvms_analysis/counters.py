@@ -52,11 +52,11 @@ def node_counters(log: RunLog) -> Counters:
     return {role: counts for role, counts in totals.items() if counts}
 
 
-def made_rubbish(counters: Mapping[str, Mapping[str, int]]) -> Iterator[str]:
+def invalid_outputs(counters: Mapping[str, Mapping[str, int]]) -> Iterator[str]:
     """Which parts made outputs that had to be replaced by safe ones."""
     for role, counts in counters.items():
         if count := counts.get(UNSAFE, 0):
-            yield f"{role} made rubbish in {count} ticks; its safe output was used instead"
+            yield f"the output of {role} was invalid in {count} ticks; its safe output was used instead"
 
 
 def lost_inputs(counters: Mapping[str, Mapping[str, int]], ticks: int) -> Iterator[str]:
@@ -67,7 +67,7 @@ def lost_inputs(counters: Mapping[str, Mapping[str, int]], ticks: int) -> Iterat
     """
     for role, counts in counters.items():
         if count := counts.get(RESETS, 0):
-            yield f"{role} began anew {count} times, since time had jumped"
+            yield f"{role} restarted {count} times, since time had jumped"
         for key, word in ((REFUSED, "refused"), (HELD, "replaced")):
             count = counts.get(key, 0)
             if count > REFUSED_SHARE * ticks:

@@ -71,13 +71,13 @@ def judge(log: RunLog, check: Check | None = None) -> Outcome:
         return Outcome(INVALID, (NO_RUN, *map(_reason, check.faults)))
     run = Analysis(log, estimated=judged_by(log) == ESTIMATES)
     broken, unknown = _limits(run)
-    rubbish, inputs = _counted(log)
+    unsafe, inputs = _counted(log)
     aborted = _aborted(log)
     reasons: dict[Word, list[str]] = {
         # A run that was stopped may have ended before there was anything to judge.
         INVALID: [*map(_reason, check.faults), *inputs, *([] if aborted else unknown)],
         ABORTED: aborted,
-        GIVEN_UP: [*_goal(log, run), *broken, *rubbish],
+        GIVEN_UP: [*_goal(log, run), *broken, *unsafe],
     }
     for word in WORST_FIRST:
         if reasons[word]:
@@ -122,7 +122,7 @@ def _limits(run: Analysis) -> tuple[list[str], list[str]]:
 
 
 def _counted(log: RunLog) -> tuple[list[str], list[str]]:
-    """What the nodes' counters say: of parts that made rubbish, and of inputs that were lost."""
+    """What the nodes' counters say: of parts whose output was invalid, and of inputs that were lost."""
     try:
         counts = counters.node_counters(log)
     except LogError:  # a finding of the check: what is there under this name is something else
@@ -130,7 +130,7 @@ def _counted(log: RunLog) -> tuple[list[str], list[str]]:
     if not counts:
         return [], [f"no node says on {topics.DIAGNOSTICS.name} what it has counted"]
     ticks = log.counts.get(log.full_name(topics.CLOCK), 0)
-    return list(counters.made_rubbish(counts)), list(counters.lost_inputs(counts, ticks))
+    return list(counters.invalid_outputs(counts)), list(counters.lost_inputs(counts, ticks))
 
 
 def _goal(log: RunLog, run: Analysis) -> Iterator[str]:

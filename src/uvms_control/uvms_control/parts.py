@@ -43,7 +43,7 @@ class ControllerPart(Part):
         yield topics.JOINT_COMMAND, joints
 
     def restart(self, reason: str) -> None:
-        """The law begins anew: its integrals and filters are gone."""
+        """The law restarts: its integrals and filters are gone."""
         self.law = create(self._config, self._vehicle)
 
     def safe(self, tick: Tick) -> Iterator[Output]:
@@ -71,7 +71,7 @@ class AllocatorPart(Part):
         yield topics.ALLOCATION, allocation
 
     def restart(self, reason: str) -> None:
-        """The method begins anew, without a thrust before."""
+        """The method restarts, without a thrust before."""
         self.method = create(self._config, self._vehicle)
 
     def safe(self, tick: Tick) -> Iterator[Output]:

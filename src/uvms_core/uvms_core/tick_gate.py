@@ -26,7 +26,7 @@ DEPTH = 256
 KEEP = to_nanoseconds(MAX_AGE_S)
 """How long the last good value stands in for those that cannot be used, ns: as long as control
 works with any old state. It is also the longest gap that a part goes on after as if nothing had
-been; after a longer one it begins anew: its derivatives, integrals and filters would take the gap
+been; after a longer one it restarts: its derivatives, integrals and filters would take the gap
 for one long step."""
 _STAMP = itemgetter(0)
 

@@ -53,7 +53,7 @@ class NavigationPart(Part):
         self._remembered: list[Odometry] = []
         self._good: Odometry | None = None
         self.estimate: Odometry | None = None
-        """The last one; `restart` drops it, as it is called where it was rubbish."""
+        """The last one; `restart` drops it, since it may have been invalid."""
 
     def remember(self, estimate: Odometry) -> None:
         """An estimate from before, to go on from if it fits the time at which the filter begins."""
@@ -62,7 +62,7 @@ class NavigationPart(Part):
     def step(self, tick: Tick) -> Iterator[Output]:
         """One step of the filter; samples that it refuses are left out."""
         samples = {name: tick[topic] for name, topic in self._sensors.items()}
-        self._good = self.estimate or self._good  # it was not rubbish, or there was a restart
+        self._good = self.estimate or self._good  # it was valid, or there was a restart
         if not self._begun:
             self._begin(tick.stamp)
         odometry, self._faults = self.filter.step_screened(tick.stamp, samples)
@@ -160,8 +160,8 @@ class ObserverPart(Part):
         yield topics.DISTURBANCE_BUDGET, budget
 
     def restart(self, reason: str) -> None:
-        """The observer begins anew, with no external wrench."""
-        self._last = None  # it may be rubbish
+        """The observer restarts, with no external wrench."""
+        self._last = None  # it may be invalid
         self.law = create(self._config, self._vehicle)
 
     def safe(self, tick: Tick) -> Iterator[Output]:

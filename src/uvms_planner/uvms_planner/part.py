@@ -43,7 +43,7 @@ class PlannerPart(Part):
         """A planner that holds the pose of its next tick; a goal in progress is given up."""
         before, self.planner = self.planner, MotionPlanner(*self._arguments)
         if before.has_goal:
-            self.planner.give_up(f"the planner began anew: {reason}")
+            self.planner.give_up(f"the planner restarted: {reason}")
 
     def safe(self, tick: Tick) -> Iterator[Output]:
         """The plan goes on, or holds, by the last state that could be used."""

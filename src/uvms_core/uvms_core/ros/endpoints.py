@@ -54,7 +54,7 @@ class Publishers:
     def __init__(self, node: Node, allowed: Mapping[str, int]) -> None:
         self._node, self._allowed = node, dict(allowed)
         self._known: set[bytes] = set()
-        self._forgiven: set[bytes] = set()
+        self._ended: set[bytes] = set()
         self._first_seen: dict[bytes, float] = {}
         self._host: bytes = b""
 
@@ -63,10 +63,10 @@ class Publishers:
         for topic in self._allowed:
             self._known |= {each.gid for each in self._all(topic)}
 
-    def forgive(self, node: str) -> None:
+    def expect_again(self, node: str) -> None:
         """The present endpoints of this node do not count any more: it is dead."""
         for topic in self._allowed:
-            self._forgiven |= {
+            self._ended |= {
                 each.gid for each in self._all(topic) if each.node.rpartition("/")[2] == node
             }
 
@@ -91,7 +91,7 @@ class Publishers:
         ]
 
     def _is_live(self, gid: bytes) -> bool:
-        if gid in self._forgiven:
+        if gid in self._ended:
             return False
         since = self._first_seen.setdefault(gid, time.monotonic())
         return time.monotonic() - since > LEASE_S or not self._is_dead(gid)

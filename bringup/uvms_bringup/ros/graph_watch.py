@@ -19,7 +19,7 @@ LOOK_S = 0.5
 CONDUCTOR = "conductor"
 
 
-class Census:
+class GraphWatch:
     """Counts the publishers of the loop's topics and of /clock.
 
     Args:
@@ -55,7 +55,7 @@ class Census:
 
     def _others(self) -> list[str]:
         strangers = self._before.strangers()
-        return sorted({str(each) for each in strangers}) or self._namesakes()
+        return sorted({str(each) for each in strangers}) or self._same_names()
 
     def check_alone_with_nodes(self) -> None:
         """When the run's own nodes are all there: whoever comes now does not belong.
@@ -67,9 +67,9 @@ class Census:
             raise RunError(self._occupied([str(each) for each in strangers]))
         self._during.know()
 
-    def forgive(self, role: str) -> None:
+    def expect_again(self, role: str) -> None:
         """The node of this role died; another takes its place."""
-        self._during.forgive(role)
+        self._during.expect_again(role)
 
     def look(self) -> bool:
         """From time to time: note who does not belong; whether somebody was ever found."""
@@ -87,11 +87,11 @@ class Census:
             " set another ROS_DOMAIN_ID, or set none, so that a free one is chosen"
         )
 
-    def _namesakes(self) -> list[str]:
+    def _same_names(self) -> list[str]:
         """Nodes of our names in our namespace that publish no topic of the loop (yet)."""
         space = self._node.get_namespace().rstrip("/")
         names = {f"{space}/{role}" for role in self._roles}
         conductor = f"{space}/{CONDUCTOR}"
         there = self._before.live(topics.ROSOUT.name)  # every node publishes there
-        twins = [each for each in there if each.node == conductor and not each.is_ours]
-        return [each.who for each in there if each.node in names] + [one.who for one in twins]
+        others = [each for each in there if each.node == conductor and not each.is_ours]
+        return [each.who for each in there if each.node in names] + [one.who for one in others]

@@ -19,13 +19,13 @@ Parameters = dict[str, dict[str, Any]]
 """Of the nodes, by role."""
 
 
-class Company(Protocol):
+class RunNodes(Protocol):
     """All nodes that a run starts."""
 
     def enter(self) -> list[Node]:
         """Let them into the graph; returns those inside this process."""
 
-    def replace_the_dead(self) -> list[tuple[str, str]]:
+    def respawn_dead(self) -> list[tuple[str, str]]:
         """Roles whose node has died and was started again, with how it ended.
 
         Raises:
@@ -46,7 +46,7 @@ class ComposedNodes:
         """Make the nodes."""
         return [make_node(role, own, self._cast) for role, own in self._parameters.items()]
 
-    def replace_the_dead(self) -> list[tuple[str, str]]:
+    def respawn_dead(self) -> list[tuple[str, str]]:
         """None: they live and die with this process."""
         return []
 
@@ -82,14 +82,14 @@ class SeparateNodes:
         self._processes.release()
         return []
 
-    def replace_the_dead(self) -> list[tuple[str, str]]:
-        """As `Company` says; the plant is never replaced, because time would begin anew."""
+    def respawn_dead(self) -> list[tuple[str, str]]:
+        """As `RunNodes` says; the plant is not started again, because time would start over."""
         if not self._respawn:
             self._processes.check()
             return []
         replaced = []
         for role in self._processes.dead():
-            how = self._processes.obituary(role)
+            how = self._processes.exit_report(role)
             if role == topics.PLANT:
                 raise RunError(how)
             self._processes.start_again(role)

@@ -22,7 +22,7 @@ ANSWER_S = 15.0
 """Wall time that it has to answer."""
 
 
-class Pulse:
+class PlantWatch:
     """Asks a plant that is silent what it has published.
 
     Args:
