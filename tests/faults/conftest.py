@@ -8,6 +8,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import pytest
+from outcome_runs import DURATION_S, counters_of_parts, simulated
 
 LONG = os.environ.get("UVMS_FAULTS") == "long"
 TABLE = os.environ.get("UVMS_FAULTS_TABLE", "")
@@ -70,3 +71,33 @@ def _rows():
     yield from (f"| {fault} | {n} | {outcome} |" for (fault, outcome), n in counts.items())
     for test, why in FAILED.items():
         yield f"| `{test.rpartition('/')[2]}` | 1 | **failed**: {why.replace('|', '/')} |"
+
+
+@pytest.fixture(scope="session")
+def run(tmp_path_factory):
+    """Six seconds on a path."""
+    folder = tmp_path_factory.mktemp("run") / "path"
+    path, summary = simulated(folder, "manipulation", duration_s=DURATION_S)
+    assert (summary["outcome"], summary["reasons"]) == ("completed", [])
+    return path
+
+
+@pytest.fixture(scope="session")
+def uncontrolled(tmp_path_factory):
+    """Six seconds in which the arm moves and nobody controls the vehicle."""
+    folder = tmp_path_factory.mktemp("run") / "free"
+    settings = ("control.enabled=false", "goal.joints.times_s=[5.0]")
+    posture = "goal.joints.positions_deg=[[10.0, 5.0, 130.0, 0.0]]"
+    path, summary = simulated(folder, "arm_swing", *settings, posture, duration_s=DURATION_S)
+    assert (summary["outcome"], summary["reasons"]) == ("completed", [])
+    return path
+
+
+@pytest.fixture(scope="session")
+def hover(tmp_path_factory):
+    """Forty seconds in which the vehicle holds its pose."""
+    folder = tmp_path_factory.mktemp("run") / "hover"
+    path, summary = simulated(folder, "hover", duration_s=40.0)
+    assert (summary["outcome"], summary["reasons"]) == ("completed", [])
+    assert all(counts["refused"] == 0 for counts in counters_of_parts(summary))
+    return path

@@ -91,9 +91,10 @@ def test_another_seed_is_another_run(simulated, tmp_path):
 
 
 def test_real_time_follows_the_wall_clock(tmp_path):
-    arguments = ("run", "hover", "--duration", "8", "--pace", "realtime:4", "--composed")
+    # As slow as time itself: on a loaded machine commands come late, and the run is then invalid.
+    arguments = ("run", "hover", "--duration", "8", "--pace", "realtime:1", "--composed")
     outcome = finished(uvms(tmp_path, *arguments))
     stamps = outcome.log.series(topics.CLOCK).time
     assert np.allclose(np.diff(stamps), 0.05)
-    assert outcome.summary["wall_s"] >= 0.95 * 8.0 / 4.0
+    assert outcome.summary["wall_s"] >= 0.95 * 8.0
     assert outcome.summary["end_effector_error_m"]["max"] < 0.1

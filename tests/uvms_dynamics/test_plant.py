@@ -162,8 +162,11 @@ def test_a_start_that_is_not_finite_is_named():
     free = load_vehicle(
         overrides={"hull.linear_damping": [0.0] * 6, "hull.quadratic_damping": [0.0] * 6}
     )
+    config = PlantConfig().model_copy(  # past the bounds, which a file cannot do
+        update={"initial_velocity": (1e170, 0.0, 0.0, 0.0, 1e170, 0.0)}
+    )
     with pytest.raises(PlantDiverged, match=r"at t = 0\.000 s .*: derivative of .* is nan"):
-        plant_of(free, initial_velocity=(1e170, 0, 0, 0, 1e170, 0))
+        Plant(free, config, seed=1)
 
 
 @pytest.mark.parametrize(

@@ -56,7 +56,7 @@ def invalid_outputs(counters: Mapping[str, Mapping[str, int]]) -> Iterator[str]:
     """Which parts made outputs that had to be replaced by safe ones."""
     for role, counts in counters.items():
         if count := counts.get(UNSAFE, 0):
-            yield f"the output of {role} was invalid in {count} ticks; its safe output was used instead"
+            yield f"{role}: its output was invalid in {count} ticks, and replaced by a safe one"
 
 
 def lost_inputs(counters: Mapping[str, Mapping[str, int]], ticks: int) -> Iterator[str]:

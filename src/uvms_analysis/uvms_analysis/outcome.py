@@ -122,7 +122,7 @@ def _limits(run: Analysis) -> tuple[list[str], list[str]]:
 
 
 def _counted(log: RunLog) -> tuple[list[str], list[str]]:
-    """What the nodes' counters say: of parts whose output was invalid, and of inputs that were lost."""
+    """What the nodes' counters say: invalid outputs of parts, and inputs that were lost."""
     try:
         counts = counters.node_counters(log)
     except LogError:  # a finding of the check: what is there under this name is something else

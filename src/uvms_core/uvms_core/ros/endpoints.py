@@ -16,6 +16,9 @@ from pathlib import Path
 from rclpy.node import Node
 
 FAST_DDS = bytes((0x01, 0x0F))
+UNNAMED = "_NODE_NAME_UNKNOWN_"
+NAMED_S = 2.0
+"""Wall time for the name of an endpoint's node to arrive; after that it counts without one."""
 LEASE_S = 25.0
 """Wall time after which a killed process has left the graph for certain: the lease of Fast DDS is
 20 s. An endpoint that is still there then is live, wherever its process runs."""
@@ -82,13 +85,18 @@ class Publishers:
 
     def live(self, topic: str) -> list[Endpoint]:
         """Publishers of a topic, without those of processes that were killed."""
-        return [each for each in self._all(topic) if self._is_live(each.gid)]
+        return [one for one in self._all(topic) if self._is_live(one.gid) and self._is_named(one)]
 
     def _all(self, topic: str) -> list[Endpoint]:
         return [
             Endpoint(topic, _full_name(info), bytes(info.endpoint_gid))
             for info in self._node.get_publishers_info_by_topic(topic)
         ]
+
+    def _is_named(self, each: Endpoint) -> bool:
+        """The graph learns of an endpoint before it learns of its node; soon it knows both."""
+        since = self._first_seen.setdefault(each.gid, time.monotonic())
+        return UNNAMED not in each.node or time.monotonic() - since > NAMED_S
 
     def _is_live(self, gid: bytes) -> bool:
         if gid in self._ended:
