@@ -90,6 +90,7 @@ class Conductor(Node):
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}
+        self._asked = {diagnostics.GOALS_ACCEPTED: 0, diagnostics.PAUSES: 0}
         self.feedback: Any = None
         self.result: Any = None
         self.result_status: int | None = None  # action_msgs/msg/GoalStatus
@@ -296,6 +297,17 @@ class Conductor(Node):
         status = from_message(topics.DIAGNOSTICS, msg)
         if status.level == diagnostics.ERROR:
             self._faults[status.name] = status.message
+        for key in self._asked:
+            count = status.number(key)
+            if count == count:  # NaN: this node does not count it
+                self._asked[key] = max(self._asked[key], int(count))
+
+    def interference(self) -> list[str]:
+        """What somebody else asked of the run's nodes, in words."""
+        goals = self._asked[diagnostics.GOALS_ACCEPTED] - (self.goal_handle is not None)
+        pauses = self._asked[diagnostics.PAUSES]
+        found = [f"the planner accepted {goals} goals that were not this run's"] * (goals > 0)
+        return found + [f"time was held {pauses} times by whoever called pause"] * (pauses > 0)
 
     def _take_feedback(self, msg: Any) -> None:
         self.feedback = msg.feedback

@@ -170,6 +170,7 @@ class GraphRun:
             when = to_seconds(conductor.stamp)
             self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
         conductor.losses.look()
+        self.ending.incidents += conductor.interference()
         if conductor.acknowledgement is not None:
             conductor.acknowledgement.look_after()
         if conductor.recorder.set_back is not None:

@@ -5,6 +5,9 @@ from dataclasses import dataclass, field
 
 OK, WARN, ERROR, STALE = range(4)
 
+GOALS_ACCEPTED, PAUSES = "goals_accepted", "pauses"
+"""Values of the planner and of the plant: what was asked of them, by whomever."""
+
 
 @dataclass(frozen=True)
 class Status:

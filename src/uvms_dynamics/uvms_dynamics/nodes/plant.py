@@ -86,6 +86,7 @@ class PlantNode(UvmsNode):
         self._without: set[str] = set()  # commands of this tick that came but cannot be used
         self._running = False
         self._paused = self._pace.start_paused
+        self._pauses = 0
         self._wanted = self._pace.auto_start
         self._deadline: float | None = time.monotonic() + POLL
         self._timeouts = 0
@@ -234,6 +235,10 @@ class PlantNode(UvmsNode):
             self.get_logger().error(text, throttle_duration_sec=NOTICE)
             self.report(self._plant.stamp, diagnostics.ERROR, text)
 
+    def more_counts(self) -> dict[str, int]:
+        """How often time was held, whoever asked for it."""
+        return {**super().more_counts(), diagnostics.PAUSES: self._pauses}
+
     def _publish_tick(self) -> None:
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
         for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
@@ -311,6 +316,7 @@ class PlantNode(UvmsNode):
 
     def _answer_pause(self, request: SetBool.Request, response: SetBool.Response):
         was_paused, self._paused, response.success = self._paused, request.data, True
+        self._pauses += request.data and not was_paused
         response.message = f"paused at {to_seconds(self._plant.stamp):.2f} s"
         if not request.data:
             response.message = f"continuing from {to_seconds(self._plant.stamp):.2f} s"

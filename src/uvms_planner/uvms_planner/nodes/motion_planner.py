@@ -37,6 +37,7 @@ class MotionPlannerNode(PartNode):
         self._outcome: Any = None
         self._type: Any = None
         self._stamp = 0
+        self._accepted = 0
         self._servers = [self._serve(action) for action in topics.ACTIONS]
 
     def make_part(self) -> PlannerPart:
@@ -51,6 +52,10 @@ class MotionPlannerNode(PartNode):
             return
         self._answer_goal(plan)
         self.report(tick.stamp, step_ms=self.step_ms, **plan.diagnostics())
+
+    def more_counts(self) -> dict[str, int]:
+        """Goals that were accepted, whoever sent them."""
+        return {**super().more_counts(), diagnostics.GOALS_ACCEPTED: self._accepted}
 
     def _answer_goal(self, plan: PlannerStep) -> None:
         if self._handle is None:
@@ -79,6 +84,7 @@ class MotionPlannerNode(PartNode):
             self.get_logger().error(f"goal rejected: {fault}")
             self.report(self._stamp, diagnostics.ERROR, str(fault))
             return GoalResponse.REJECT
+        self._accepted += 1
         return GoalResponse.ACCEPT
 
     def _begin(self, cls: Any, handle: ServerGoalHandle) -> None:
