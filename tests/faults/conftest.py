@@ -58,7 +58,8 @@ def pytest_sessionfinish(session):
         return
     page = Path(TABLE)
     before, rest = page.read_text(encoding="utf-8").split(BEGIN)
-    table = "\n".join(["| fault | cases | outcome |", "|---|---|---|", *_rows()])
+    which = "All tests." if LONG else "The quick tests; those that take long were left out."
+    table = "\n".join([which, "", "| fault | cases | outcome |", "|---|---|---|", *_rows()])
     page.write_text(f"{before}{BEGIN}\n{table}\n{END}{rest.split(END)[1]}", encoding="utf-8")
 
 
