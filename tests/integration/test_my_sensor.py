@@ -26,7 +26,8 @@ def runs(tmp_path_factory, environment):
         vehicle = vehicle_file(folder, DVL_NOISE, **sections)
         arguments = ("--duration", SECONDS, "--set", f"vehicle={vehicle}", "--output", folder)
         done = uvms(environment, "simulate", "hover", *arguments)
-        assert done.returncode == 0, done.stderr
+        # With so poor a DVL the vehicle drifts farther than a run may; the fixes keep it in place.
+        assert done.returncode == (0 if sections else 1), done.stdout + done.stderr
         logs.append(RunLog.open(folder / "run.mcap"))
     return logs
 
