@@ -4,6 +4,7 @@
 """
 
 import os
+import re
 from collections import defaultdict
 from pathlib import Path
 
@@ -28,12 +29,18 @@ def pytest_collection_modifyitems(items):
                 item.add_marker(skip)
 
 
+def _line(text: str) -> str:
+    """One line of a table, without the folders of this machine."""
+    first = text.strip().splitlines()[0]
+    return re.sub(r"/\S*/pytest-\S*/", "", first).replace("|", "/")
+
+
 @pytest.fixture
 def saw(request):
     """Record what a fault led to: `saw("two graphs on one domain", "both exit 3, named")`."""
 
     def record(fault: str, outcome: str, cases: str | int = 1) -> None:
-        SEEN[request.node.nodeid].append((fault, outcome, int(cases)))
+        SEEN[request.node.nodeid].append((_line(fault), _line(outcome), int(cases)))
 
     return record
 
@@ -71,7 +78,7 @@ def _rows():
             counts[fault, outcome] += cases
     yield from (f"| {fault} | {n} | {outcome} |" for (fault, outcome), n in counts.items())
     for test, why in FAILED.items():
-        yield f"| `{test.rpartition('/')[2]}` | 1 | **failed**: {why.replace('|', '/')} |"
+        yield f"| `{test.rpartition('/')[2]}` | 1 | **failed**: {_line(why)} |"
 
 
 @pytest.fixture(scope="session")
