@@ -9,6 +9,7 @@ from collections import defaultdict
 from pathlib import Path
 
 import pytest
+from judged import figures, whole_run
 from outcome_runs import DURATION_S, counters_of_parts, simulated
 
 LONG = os.environ.get("UVMS_FAULTS") == "long"
@@ -109,3 +110,21 @@ def hover(tmp_path_factory):
     assert (summary["outcome"], summary["reasons"]) == ("completed", [])
     assert all(counts["refused"] == 0 for counts in counters_of_parts(summary))
     return path
+
+
+@pytest.fixture(scope="session")
+def whole_log(tmp_path_factory):
+    """The log that tests damage."""
+    return whole_run(tmp_path_factory.mktemp("run") / "whole")
+
+
+@pytest.fixture(scope="session")
+def whole(whole_log):
+    """Its figures."""
+    return figures(whole_log)
+
+
+@pytest.fixture(scope="session")
+def data(whole_log):
+    """Its bytes."""
+    return whole_log.read_bytes()

@@ -7,7 +7,7 @@ was damaged never counts as completed unless every figure is that of the whole l
 import numpy as np
 import pytest
 from damage import flipped, flipped_in, reassembled, write
-from judged import count_of, figures, judged, whole_run
+from judged import count_of, judged
 from mcap.opcode import Opcode
 from rewrite import rewrite
 
@@ -16,21 +16,6 @@ from uvms_analysis.log.recover import recover
 from uvms_analysis.report import report
 
 SEEDS_OF_QUICK = 1
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    return whole_run(tmp_path_factory.mktemp("run") / "whole")
-
-
-@pytest.fixture(scope="module")
-def whole(run):
-    return figures(run)
-
-
-@pytest.fixture(scope="module")
-def data(run):
-    return run.read_bytes()
 
 
 KINDS = {
@@ -206,12 +191,14 @@ def exchanged(messages, rng):
 @pytest.mark.parametrize(
     "seeds", [range(1), pytest.param(range(1, 12), marks=pytest.mark.long)], ids=["quick", "long"]
 )
-def test_messages_that_were_changed_are_seen(run, whole, tmp_path, saw, change, seeds):
+def test_messages_that_were_changed_are_seen(whole_log, whole, tmp_path, saw, change, seeds):
     results = []
     for seed in seeds:
         rng = np.random.default_rng(seed)
         path = rewrite(
-            run, tmp_path / f"{seed}" / "run.mcap", messages=lambda all_, r=rng: change(all_, r)
+            whole_log,
+            tmp_path / f"{seed}" / "run.mcap",
+            messages=lambda all_, r=rng: change(all_, r),
         )
         assert RunLog.open(path).fault == ""
         results.append(judged(path, whole, tmp_path))

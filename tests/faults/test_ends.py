@@ -97,17 +97,6 @@ def test_a_full_disk_is_one_line(tmp_path, saw):
     saw("the disk is full", "one line that names the log, exit 2")
 
 
-def test_a_deleted_working_directory_is_one_line(tmp_path, saw):
-    place = tmp_path / "place"
-    place.mkdir()
-    command = f"cd {place} && rmdir {place} && {sys.executable} -m uvms_bringup.cli simulate hover"
-    done = subprocess.run(["sh", "-c", command], capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert "Traceback" not in done.stderr
-    assert "working directory" in done.stderr
-    saw("the working directory is deleted", "one line, exit 2")
-
-
 def test_an_output_that_is_a_file_is_one_line(tmp_path):
     (tmp_path / "a").write_text("")
     done = subprocess.run(

@@ -9,9 +9,23 @@ import sys
 import time
 
 import pytest
+from graph import own_domain
 
 PROGRAM = [sys.executable, "-m", "uvms_bringup.entry"]
 UP = "up"
+STUCK = """
+import ctypes
+from rclpy.node import Node
+from uvms_core.ros import spin
+
+class Stuck(Node):
+    def destroy_node(self):
+        ctypes.PyDLL(None).sleep(600)  # holds Python's global lock, as a deadlock in DDS does
+
+spin.LEAVE_S = 1.0
+spin.start(["stuck"])
+spin.Spinner([Stuck("stuck")]).shutdown()
+"""
 SAYS_UP = f"""
 from uvms_bringup.entry import main
 print({UP!r}, flush=True)
@@ -145,3 +159,11 @@ def test_a_signal_at_any_instant(tmp_path, saw, after, number):
     assert "Traceback" not in out
     assert code in (128 + number, -number), out
     saw(f"{number.name} at any instant of `uvms simulate`", "no traceback, exit 130 or 143")
+
+
+def test_a_process_that_cannot_leave_ros_is_ended(saw):
+    done = subprocess.run(
+        [sys.executable, "-c", STUCK], env=own_domain(), capture_output=True, text=True, timeout=60
+    )
+    assert (done.returncode, done.stderr) == (1, "")
+    saw("a deadlock of the middleware while a process leaves ROS", "the process ends after 10 s")

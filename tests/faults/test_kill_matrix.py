@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -126,15 +127,21 @@ def test_the_kill_matrix(tmp_path, saw, role, name, pace):
     saw(f"{name} of {role}, {pace}", f"{counted}; no command older than its bound", "5")
 
 
+@contextmanager
+def under_way(folder, seed, pace):
+    """A run at a random instant of its first seconds."""
+    arguments = ("run", "hover", "--duration", str(DURATION_S), "--pace", *PACES[pace])
+    with running(folder, *arguments) as run:
+        run.await_ticks(60_000)
+        time.sleep(random.Random(seed).uniform(0.0, 4.0))
+        yield run
+
+
 @pytest.mark.long
 @pytest.mark.parametrize("pace", PACES)
 def test_the_recorder_halted_at_any_instant(tmp_path, saw, pace):
     for instant in range(5):
-        draw = random.Random(f"recorder {pace} {instant}")
-        arguments = ("run", "hover", "--duration", str(DURATION_S), "--pace", *PACES[pace])
-        with running(tmp_path / str(instant), *arguments) as run:
-            run.await_ticks(60_000)
-            time.sleep(draw.uniform(0.0, 4.0))
+        with under_way(tmp_path / str(instant), f"recorder {pace} {instant}", pace) as run:
             run.signal(signal.SIGSTOP)
             time.sleep(HALT_S)
             run.signal(signal.SIGCONT)
@@ -149,11 +156,7 @@ def test_the_recorder_halted_at_any_instant(tmp_path, saw, pace):
 @pytest.mark.parametrize("pace", PACES)
 def test_the_recorder_killed_at_any_instant(tmp_path, saw, pace):
     for instant in range(5):
-        draw = random.Random(f"kill recorder {pace} {instant}")
-        arguments = ("run", "hover", "--duration", str(DURATION_S), "--pace", *PACES[pace])
-        with running(tmp_path / str(instant), *arguments) as run:
-            run.await_ticks(60_000)
-            time.sleep(draw.uniform(0.0, 4.0))
+        with under_way(tmp_path / str(instant), f"kill recorder {pace} {instant}", pace) as run:
             nodes = list(children(run.process.pid).values())
             run.signal(signal.SIGKILL)
             run.code()

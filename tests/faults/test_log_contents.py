@@ -2,7 +2,7 @@
 
 import pytest
 from damage import reassembled, swapped_attachments, write
-from judged import count_of, figures, judged, whole_run
+from judged import count_of, judged
 from mcap.opcode import Opcode
 from rewrite import rewrite
 
@@ -10,21 +10,6 @@ from uvms_analysis.log.read import RunLog
 from uvms_analysis.summary import summarise
 from uvms_bringup.scenario import load_scenario
 from uvms_core.vehicle import dump_vehicle
-
-
-@pytest.fixture(scope="module")
-def run(tmp_path_factory):
-    return whole_run(tmp_path_factory.mktemp("run") / "whole")
-
-
-@pytest.fixture(scope="module")
-def whole(run):
-    return figures(run)
-
-
-@pytest.fixture(scope="module")
-def data(run):
-    return run.read_bytes()
 
 
 def other_order(text):
@@ -48,12 +33,12 @@ READ = ("/ground_truth/odometry", "/reference", "/allocation", "/diagnostics", "
 
 
 @pytest.mark.parametrize("name", DEFINITIONS)
-def test_foreign_definitions_are_named(run, whole, tmp_path, saw, name):
+def test_foreign_definitions_are_named(whole_log, whole, tmp_path, saw, name):
     results = []
     for topic in READ[: 1 if name != "other order of fields" else 5]:
         target = tmp_path / topic.replace("/", "_") / "run.mcap"
         path = rewrite(
-            run,
+            whole_log,
             target,
             schema=lambda own, text, t=topic: (own, DEFINITIONS[name](text) if own == t else text),
         )
@@ -82,8 +67,8 @@ METADATA = {
 
 
 @pytest.mark.parametrize("name", METADATA)
-def test_metadata_that_say_something_else_are_named(run, whole, tmp_path, saw, name):
-    path = rewrite(run, tmp_path / "log" / "run.mcap", metadata=METADATA[name])
+def test_metadata_that_say_something_else_are_named(whole_log, whole, tmp_path, saw, name):
+    path = rewrite(whole_log, tmp_path / "log" / "run.mcap", metadata=METADATA[name])
     assert judged(path, whole, tmp_path) == "fault stated"
     summary = summarise(path, wall_s=0.0)
     saw(f"metadata of a log: {name}", summary["reasons"][0])
@@ -113,8 +98,8 @@ ATTACHMENTS = {
 
 
 @pytest.mark.parametrize("name", ATTACHMENTS)
-def test_attachments_that_say_something_else_are_named(run, whole, tmp_path, saw, name):
-    path = rewrite(run, tmp_path / "log" / "run.mcap", attachments=ATTACHMENTS[name])
+def test_attachments_that_say_something_else_are_named(whole_log, whole, tmp_path, saw, name):
+    path = rewrite(whole_log, tmp_path / "log" / "run.mcap", attachments=ATTACHMENTS[name])
     assert judged(path, whole, tmp_path) == "fault stated"
     saw(f"attachments of a log: {name}", summarise(path, wall_s=0.0)["reasons"][0])
 
@@ -135,7 +120,7 @@ def test_attachments_that_were_exchanged_or_taken_away_are_named(data, whole, tm
     saw("attachments exchanged or taken away, checksums right", "named; the run is invalid", "2")
 
 
-def test_a_path_that_is_none_costs_only_the_figures_that_need_it(run, whole, tmp_path, saw):
+def test_a_path_that_is_none_costs_only_the_figures_that_need_it(whole_log, whole, tmp_path, saw):
     for text in (
         b"{",
         b"[]",
@@ -143,7 +128,7 @@ def test_a_path_that_is_none_costs_only_the_figures_that_need_it(run, whole, tmp
     ):
         folder = tmp_path / str(len(text))
         change = {"path.json": text}
-        path = rewrite(run, folder / "run.mcap", attachments=lambda a, c=change: a | c)
+        path = rewrite(whole_log, folder / "run.mcap", attachments=lambda a, c=change: a | c)
         summary = summarise(path, wall_s=0.0)
         assert summary["outcome"] == "invalid"
         assert "path.json" in summary["missing"]["end_effector_error_m"]
@@ -155,11 +140,11 @@ def test_a_path_that_is_none_costs_only_the_figures_that_need_it(run, whole, tmp
     )
 
 
-def test_joints_of_another_vehicle_are_named(run, whole, tmp_path, saw):
+def test_joints_of_another_vehicle_are_named(whole_log, whole, tmp_path, saw):
     other = load_scenario("manipulation", vehicle="bluerov2_alpha5").load_vehicle()
     text = dump_vehicle(other).encode()
     path = rewrite(
-        run, tmp_path / "log" / "run.mcap", attachments=lambda a: a | {"vehicle.yaml": text}
+        whole_log, tmp_path / "log" / "run.mcap", attachments=lambda a: a | {"vehicle.yaml": text}
     )
     assert judged(path, whole, tmp_path) == "fault stated"
     saw("vehicle.yaml of another vehicle", "named: its joints are not those of the messages")

@@ -1,6 +1,7 @@
 """`uvms run`: the nodes on a real ROS 2 graph, conducted and recorded from first to last tick."""
 
 import os
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -29,6 +30,9 @@ from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 
 Progress = Callable[[int, str], None]
+QUIET_S = 0.3
+"""Wall time after the nodes' end until what they leave behind in the middleware is cleared up; to
+leave ROS at the same moment can deadlock (`Spinner.shutdown`)."""
 
 
 class ForeignError(RunError):
@@ -97,6 +101,7 @@ class GraphRun:
             finally:
                 self._take_stock(conductor, spinner)
                 nodes.stop()
+                time.sleep(QUIET_S)
                 spinner.shutdown()
         finally:
             nodes.stop()

@@ -5,6 +5,8 @@ time-out (without one it neither sleeps nor fires timers), and signals are taken
 their own, because a handler that runs inside rcl's wait crashes now and then.
 """
 
+import faulthandler
+import os
 import signal
 import threading
 import time
@@ -18,6 +20,8 @@ from rclpy.signals import SignalHandlerOptions
 from rclpy.task import Future
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM)
+LEAVE_S = 10.0
+"""Longest wall time for leaving ROS, which takes some hundredths of a second, s."""
 IDLE = 0.2
 """Longest sleep between two checks of the nodes' deadlines, s."""
 
@@ -114,11 +118,21 @@ class Spinner:
         return future.done()
 
     def shutdown(self) -> None:
-        """Destroy the nodes and leave ROS."""
-        self._executor.shutdown()
-        for node in self._nodes:
-            node.destroy_node()
-        rclpy.try_shutdown()
+        """Destroy the nodes and leave ROS; a process that cannot leave is ended after LEAVE_S.
+
+        Fast DDS 2.14 can deadlock here when others leave the graph at the same moment: it waits
+        for a discovery callback that waits for a lock of its own. Python's global lock is held
+        meanwhile, so that no thread or signal handler of Python could end it.
+        """
+        with open(os.devnull, "w") as nowhere:
+            faulthandler.dump_traceback_later(LEAVE_S, exit=True, file=nowhere)
+            try:
+                self._executor.shutdown()
+                for node in self._nodes:
+                    node.destroy_node()
+                rclpy.try_shutdown()
+            finally:
+                faulthandler.cancel_dump_traceback_later()
 
     def _take_signal(self) -> None:
         number = signal.sigwait(SIGNALS)
