@@ -6,12 +6,14 @@ from pydantic import Field
 
 from uvms_core.config import Config
 
-Coordinate = Annotated[float, Field(ge=-1e6, le=1e6)]
-"""A place in map_ned, m: the map is a plane, which no vehicle leaves by a thousand kilometres."""
-
-
-Depth = Annotated[float, Field(ge=0.0, le=12_000.0)]
-"""Below the surface, m: in the air there is no buoyancy to model; no sea is deeper."""
+MAP_M = 1e6
+"""Half of a flat map's size: beyond a thousand kilometres north-east-down means nothing."""
+DEEPEST_M = 12_000.0
+"""Deeper than the sea is anywhere (10,935 m, Challenger Deep)."""
+Coordinate = Annotated[float, Field(ge=-MAP_M, le=MAP_M)]
+"""North or east in map_ned, m."""
+Depth = Annotated[float, Field(ge=0.0, le=DEEPEST_M)]
+"""Below the surface, m: in the air there is no buoyancy to model."""
 
 
 class StartConfig(Config):

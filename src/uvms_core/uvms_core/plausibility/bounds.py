@@ -23,13 +23,10 @@ from uvms_core.plausibility.continuity import (
 from uvms_core.plausibility.rule import Bound, Rule, within
 from uvms_core.plausibility.scale import Scale, scale_of
 from uvms_core.signals import Array
+from uvms_core.start import DEEPEST_M, MAP_M
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle, joint_limits
 
-MAP_M = 1e6
-"""Half of a flat map's size: beyond a thousand kilometres north-east-down means nothing."""
-DEEPEST_M = 12_000.0
-"""Deeper than the sea is anywhere (10,935 m, Challenger Deep)."""
 ABOVE_M = 5.0
 """How far a pressure sensor gets out of the water, in metres of it: thrown up by waves. An estimate
 of the depth may be above the surface by as much as it is uncertain, so it is not held to this."""
