@@ -59,7 +59,7 @@ def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[]
 
     def work() -> Array:
         state[:] = start
-        advance(system, state, thrust, effort, step, scratch, states, rates)
+        advance(system, state, thrust, effort, step, scratch, states, rates, 0.0)
         return state
 
     return work

@@ -104,7 +104,7 @@ def braked_states(run: FreeRun, duration: float, step: float) -> np.ndarray:
     x, scratch = run.state.copy(), make_scratch(run.system)
     states = np.empty((round(duration / step) + 1, len(x)))
     brakes = Brakes(run.vehicle, run.system, scratch)
-    brakes.advance(x, run.thrust, step, states, np.empty_like(states))
+    brakes.advance(x, run.thrust, step, states, np.empty_like(states), 0.0)
     return states
 
 

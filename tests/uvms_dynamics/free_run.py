@@ -37,7 +37,7 @@ class FreeRun:
         x, states = self.state.copy(), np.empty((steps + 1, len(self.state)))
         scratch = make_scratch(self.system)
         rates = np.empty_like(states)
-        advance(self.system, x, self.thrust, self.effort, step, scratch, states, rates)
+        advance(self.system, x, self.thrust, self.effort, step, scratch, states, rates, 0.0)
         return states
 
     def joints(self, x):

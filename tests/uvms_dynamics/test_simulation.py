@@ -137,7 +137,7 @@ def test_the_integrator_refuses_tables_that_do_not_fit(change):
         shape = arrays[name].shape
         arrays[name] = np.zeros((*shape[:-1], shape[-1] + by))
     with pytest.raises(ValueError, match="need"):
-        advance(system, step=STEP, scratch=make_scratch(system), **arrays)
+        advance(system, step=STEP, scratch=make_scratch(system), time=0.0, **arrays)
 
 
 def test_a_current_of_two_numbers_and_steps_backwards_are_refused():

@@ -50,7 +50,7 @@ def run(system, point, start, step, steps):
     thrust, states = point.state[JOINTS + 2 * n :].copy(), np.empty((steps + 1, len(start)))
     scratch = make_scratch(system)
     x, rates = start.copy(), np.empty_like(states)
-    advance(system, x, thrust, point.effort, step, scratch, states, rates)
+    advance(system, x, thrust, point.effort, step, scratch, states, rates, 0.0)
     return states
 
 
@@ -80,7 +80,7 @@ def gain(vehicle, config, bound, part):
 def rates_at(system, point, x):
     scratch, row = make_scratch(system), np.empty((1, len(x)))
     rates, thrust = np.empty((1, len(x))), point.state[JOINTS + 2 * len(point.effort) :].copy()
-    advance(system, x.copy(), thrust, point.effort, 0.0, scratch, row, rates)
+    advance(system, x.copy(), thrust, point.effort, 0.0, scratch, row, rates, 0.0)
     return rates[0]
 
 
@@ -276,7 +276,7 @@ def fastest_joint(vehicle, config, step, seconds=5.0):
     for _ in range(round(seconds / 0.5)):
         effort = torque * rng.choice([-1.0, 0.0, 1.0], len(torque))
         thrust = force * rng.choice([-1.0, 1.0], len(force))
-        advance(system, x, thrust, effort, step, scratch, states, np.empty_like(states))
+        advance(system, x, thrust, effort, step, scratch, states, np.empty_like(states), 0.0)
         rates.append(np.abs(states[:, JOINTS + 4 : JOINTS + 8]).max())
     return np.max(rates)  # not a number where any is not
 

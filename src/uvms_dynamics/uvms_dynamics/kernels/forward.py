@@ -29,13 +29,11 @@ from uvms_dynamics.kernels.motion import (
     check_motion,
     check_quaternion,
     down_in_body,
-    hull_bias_force,
     into_body,
     into_hull,
     link_velocity,
     make_workspace,
     set_angle,
-    set_link_force,
     to_hull,
     velocity_product,
 )
@@ -51,6 +49,7 @@ from uvms_dynamics.kernels.spatial import (
     store_spatial,
     to_child,
 )
+from uvms_dynamics.kernels.waves import hull_bias_force_in, set_link_force_in
 
 
 @kernel
@@ -80,26 +79,28 @@ def forward_dynamics_into(model, quat, nu_r, q, q_dot, tau, work, out):
     for i in range(1, n + 1):
         set_angle(model, work, i, q[i - 1])
         work[i, RATE], work[i, TORQUE] = q_dot[i - 1], tau[5 + i]
-    out[0], out[1], out[2], out[3], out[4], out[5] = accelerate(model, work, n, down, nu, wrench)
+    a = accelerate(model, work, None, n, down, nu, wrench)
+    out[0], out[1], out[2], out[3], out[4], out[5] = a
     for i in range(1, n + 1):
         out[5 + i] = work[i, RATE]
 
 
 @inner
-def accelerate(model, work, n, down, nu_r, wrench):
+def accelerate(model, work, wet, n, down, nu_r, wrench):
     """Acceleration of the hull; RATE of the joints becomes their acceleration.
 
     The workspace holds angle, rate and torque of each joint; the down direction, nu_r and the
-    wrench on the hull are given in the body frame, as is the result.
+    wrench on the hull are given in the body frame, as is the result. `wet` is that of `waves`;
+    None where the flow is uniform.
     """
     v, k = into_hull(model, nu_r), to_hull(model, down)
     zero = _zeros(v[0])
-    bias = minus(hull_bias_force(model, v, k), into_hull(model, wrench))
+    bias = minus(hull_bias_force_in(model, wet, v, k), into_hull(model, wrench))
     for i in range(1, n + 1):  # outward: velocities and bias forces
         rate = work[i, RATE]
         v, k = link_velocity(model, work, i, v, rate), to_child(model, work, i, k)
         _store4(work, i, VELOCITY_PRODUCT, velocity_product(v, rate))
-        set_link_force(model, work, i, v, k, zero)
+        set_link_force_in(model, wet, work, i, v, k, zero)
     apply_drag(model, work)
     inertia, force = _gather(model, work, n, v)
     inertia = plus_inertia(load_inertia(model, HULL, INERTIA), inertia)

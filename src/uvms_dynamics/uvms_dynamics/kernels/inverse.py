@@ -11,13 +11,11 @@ from uvms_dynamics.kernels.motion import (
     check_motion,
     check_quaternion,
     down_in_body,
-    hull_bias_force,
     into_body,
     into_hull,
     link_velocity,
     make_workspace,
     set_angle,
-    set_link_force,
     to_hull,
     velocity_product,
 )
@@ -31,6 +29,7 @@ from uvms_dynamics.kernels.spatial import (
     times,
     to_child,
 )
+from uvms_dynamics.kernels.waves import hull_bias_force_in, set_link_force_in
 
 
 @kernel
@@ -44,12 +43,31 @@ def inverse_dynamics(model, quat, nu_r, nu_r_dot, q, q_dot, q_ddot):
     check_quaternion(quat)
     check_motion(nu_r, nu_r_dot)
     check_joints(model, q, q_dot, q_ddot)
+    down = down_in_body(quat[0], quat[1], quat[2], quat[3])
+    return _needed(model, None, down, nu_r, nu_r_dot, q, q_dot, q_ddot)
+
+
+@kernel
+def inverse_dynamics_in(model, wet, down, nu_r, nu_r_dot, q, q_dot, q_ddot):
+    """As `inverse_dynamics`, in moving water: `wet` as in `waves`, None in a uniform flow.
+
+    down (3,) in body axes, as weight and buoyancy act in the frame that nu_r is relative to.
+    """
+    check_motion(nu_r, nu_r_dot)
+    check_joints(model, q, q_dot, q_ddot)
+    downward = down[0], down[1], down[2]
+    return _needed(model, wet, downward, nu_r, nu_r_dot, q, q_dot, q_ddot)
+
+
+@inner
+def _needed(model, wet, down, nu_r, nu_r_dot, q, q_dot, q_ddot):
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6 + n)
-    down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
+    down = to_hull(model, down)
     v, a = into_hull(model, spatial_at(nu_r, FIRST)), into_hull(model, spatial_at(nu_r_dot, FIRST))
-    _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot)
-    force = plus(hull_bias_force(model, v, down), times(load_inertia(model, HULL, INERTIA), a))
+    _forces_of_links(model, wet, work, down, v, a, q, q_dot, q_ddot)
+    bias = hull_bias_force_in(model, wet, v, down)
+    force = plus(bias, times(load_inertia(model, HULL, INERTIA), a))
     force = into_body(model, plus(force, _carry_inward(model, work, n)))
     for k in range(6):
         out[k] = force[k]
@@ -68,11 +86,28 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
     """
     check_motion(nu_r, nu_r_dot)
     check_joints(model, q, q_dot, q_ddot)
+    return _handed_over(model, None, (0.0, 0.0, 0.0), nu_r, nu_r_dot, q, q_dot, q_ddot)
+
+
+@kernel
+def coupling_wrench_in(model, wet, tilt, nu_r, nu_r_dot, q, q_dot, q_ddot):
+    """As `coupling_wrench`, in moving water: `wet` as in `waves`, None in a uniform flow.
+
+    tilt (3,) is what the acceleration of the frame that nu_r is relative to adds to down, -A / g
+    in body axes: the links' inertia is over ground, only their weight is left out.
+    """
+    check_motion(nu_r, nu_r_dot)
+    check_joints(model, q, q_dot, q_ddot)
+    downward = tilt[0], tilt[1], tilt[2]
+    return _handed_over(model, wet, downward, nu_r, nu_r_dot, q, q_dot, q_ddot)
+
+
+@inner
+def _handed_over(model, wet, down, nu_r, nu_r_dot, q, q_dot, q_ddot):
     n = q.shape[0]
     work, out = make_workspace(model), np.empty(6)
     v, a = into_hull(model, spatial_at(nu_r, FIRST)), into_hull(model, spatial_at(nu_r_dot, FIRST))
-    no_weight = (0.0, 0.0, 0.0)
-    _forces_of_links(model, work, no_weight, v, a, q, q_dot, q_ddot)
+    _forces_of_links(model, wet, work, to_hull(model, down), v, a, q, q_dot, q_ddot)
     force = into_body(model, _carry_inward(model, work, n))
     for k in range(6):
         out[k] = -force[k]
@@ -80,7 +115,7 @@ def coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot):
 
 
 @inner
-def _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot):
+def _forces_of_links(model, wet, work, down, v, a, q, q_dot, q_ddot):
     """Force that each link needs for its motion, I a + C v - drag - weight, from the hull out."""
     for i in range(1, q.shape[0] + 1):
         set_angle(model, work, i, q[i - 1])
@@ -90,7 +125,7 @@ def _forces_of_links(model, work, down, v, a, q, q_dot, q_ddot):
         x0, x1, y0, y1 = velocity_product(v, q_dot[i - 1])
         a = (a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2 + q_ddot[i - 1])
         inertia_force = times(load_inertia(model, i, INERTIA), a)
-        set_link_force(model, work, i, v, down, inertia_force)
+        set_link_force_in(model, wet, work, i, v, down, inertia_force)
     apply_drag(model, work)
 
 

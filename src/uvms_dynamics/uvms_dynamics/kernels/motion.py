@@ -124,7 +124,7 @@ def velocity_product(v, rate):
 @inner
 def set_link_force(model, work, i, v, down, other):
     """FORCE of link i: C(v) v less weight and buoyancy, and another force; its drag follows."""
-    store_spatial(work, i, FORCE, plus(_undamped_force(model, i, v, down), other))
+    store_spatial(work, i, FORCE, plus(undamped_force(model, i, v, down), other))
     gather_drag(model, work, i, v)
 
 
@@ -132,7 +132,7 @@ def set_link_force(model, work, i, v, down, other):
 def hull_bias_force(model, v, down):
     """C(v) v less weight and buoyancy, with damping, of the hull, in its frame."""
     damping = into_hull(model, hull_damping(model, into_body(model, v)))
-    return plus(_undamped_force(model, HULL, v, down), damping)
+    return plus(undamped_force(model, HULL, v, down), damping)
 
 
 @inner
@@ -150,6 +150,6 @@ def hull_damping(model, nu):
 
 
 @inner
-def _undamped_force(model, i, v, down):
+def undamped_force(model, i, v, down):
     """C(v) v less weight and buoyancy of body i."""
     return minus(gyroscopic(load_inertia(model, i, INERTIA), v), weight(model, i, down))

@@ -48,13 +48,11 @@ class _Mount(NamedTuple):
 def build_model(vehicle: Vehicle) -> Model:
     """Table of a vehicle for the kernels."""
     arm, environment = vehicle.arm, vehicle.environment
-    distal = [distal_pose(joint) for joint in arm.joints]
-    mounts = [_mount(p, j) for p, j in zip(joint_placements(arm), arm.joints, strict=True)]
-    turns = [mount.turn for mount in mounts] + [0.0]
-    poses = [_turned(turn, pose) for turn, pose in zip(turns[1:], distal, strict=True)]
+    mounts, turns = _mounts(arm)
+    poses = body_poses(arm)[1:]
     n = vehicle.n_joints
     rows = np.zeros((n + 2, layout.MODEL_COLUMNS))
-    _set_body(rows[0], vehicle.hull, _turned(turns[0], IDENTITY), environment)
+    _set_body(rows[0], vehicle.hull, body_poses(arm)[0], environment)
     _set_hull(rows[0], vehicle.hull, turns[0])
     groups, strips, ends = _drag_groups(arm, poses, environment)
     tables = [rows, *(_as_rows(x) for x in (groups, *map(cell_lines, _coefficients(arm))))]
@@ -70,6 +68,19 @@ def build_model(vehicle: Vehicle) -> Model:
         rows[i, [layout.DRAG_BEGIN, layout.DRAG_END]] = ends[i - 1 : i + 1]
     _set_fixtures(rows[n + 1], vehicle, compose(poses[-1], mounting_pose(arm.tool)))
     return np.ascontiguousarray(np.vstack(tables))
+
+
+def body_poses(arm: Arm) -> list[Pose]:
+    """The vehicle file's frame of each body 0..n in the kernels' frame of it."""
+    _, turns = _mounts(arm)
+    poses = [IDENTITY, *map(distal_pose, arm.joints)]
+    return [_turned(turn, pose) for turn, pose in zip(turns, poses, strict=True)]
+
+
+def _mounts(arm: Arm) -> tuple[list[_Mount], list[float]]:
+    """Of the joints (n,), and the turn of each body's frame (n + 1,)."""
+    mounts = [_mount(p, j) for p, j in zip(joint_placements(arm), arm.joints, strict=True)]
+    return mounts, [mount.turn for mount in mounts] + [0.0]
 
 
 _NO_TILT = 1e-15  # sine of a twist below which only the sum of the two other angles counts
@@ -112,7 +123,7 @@ def _set_body(row: Array, body: Hull | Link, pose: Pose, environment: Environmen
     buoyancy = environment.water_density_kg_m3 * body.volume_m3 * environment.gravity_m_s2
     moment = weight * (position + rotation @ body.cg_m)
     moment -= buoyancy * (position + rotation @ body.cb_m)
-    inertia = _packed(_moved(rigid + np.array(body.added_mass), pose))
+    inertia = packed(moved(rigid + np.array(body.added_mass), pose))
     _put(row, layout.INERTIA, inertia)
     _put(row, layout.NET_WEIGHT, [weight - buoyancy])
     _put(row, layout.NET_MOMENT, moment)
@@ -142,7 +153,7 @@ def _set_fixtures(row: Array, vehicle: Vehicle, tool: Pose) -> None:
     """The tool in the last link's frame, the hull's own added mass, and the tether."""
     _put(row, layout.TOOL_ROTATION, tool[1].ravel())
     _put(row, layout.TOOL_POSITION, tool[0])
-    _put(row, layout.ADDED_MASS, _packed(np.array(vehicle.hull.added_mass)))
+    _put(row, layout.ADDED_MASS, packed(np.array(vehicle.hull.added_mass)))
     if (tether := vehicle.tether) is not None:
         _put(row, layout.TETHER_DEPTH, [tether.reference_depth_m])
         _put(row, layout.TETHER_REACH, [tether.linear_within_m])
@@ -155,13 +166,13 @@ def _put(row: Array, column: Any, values: Any) -> None:
     row[column : column + len(values)] = values
 
 
-def _packed(inertia: Array) -> Array:
+def packed(inertia: Array) -> Array:
     """The 21 numbers of a symmetric 6x6 matrix, in the order of the layout."""
     upper = np.triu_indices(3)
     return np.concatenate([inertia[:3, :3][upper], inertia[:3, 3:].ravel(), inertia[3:, 3:][upper]])
 
 
-def _moved(inertia: Array, pose: Pose) -> Array:
+def moved(inertia: Array, pose: Pose) -> Array:
     """6x6 inertia of a frame at `pose`, about the outer frame's origin: X^T I X."""
     position, rotation = pose
     motion = np.zeros((6, 6))

@@ -1,9 +1,10 @@
 """The complete plant as one ordinary differential equation, and its fixed-step integrator.
 
 State x (13 + 2n + m,): position (3,) and quaternion (4,) in the world, velocity nu_r (6,) relative
-to the water in the body frame, q (n,), q_dot (n,), thrust (m,). The current is constant and
-uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c. The
-wrench on the base is that of the thrusters and of the tether.
+to the uniform flow V in the body frame, q (n,), q_dot (n,), thrust (m,): dynamics in nu_r and
+p_dot = R v_r + V. With a constant V the frame that moves with it is inertial; where V varies with
+time, weight and buoyancy act in it with g - V_dot (`water.stream`). What waves add is in the forces
+on each body (`kernels.waves`). The wrench on the base is that of the thrusters and of the tether.
 """
 
 from collections.abc import Sequence
@@ -28,6 +29,9 @@ from uvms_dynamics.kernels.spatial import load6, plus, spatial_at, store_spatial
 from uvms_dynamics.model.vehicle_table import Model, build_model
 from uvms_dynamics.simulation.tether import load_wrench, tether_load
 from uvms_dynamics.simulation.thrusters import Thrusters, build_thrusters, thrust_rate
+from uvms_dynamics.simulation.water import CurrentConfig, Water, build_water
+from uvms_dynamics.simulation.water.stream import apparent_down, carried, stream_of
+from uvms_dynamics.simulation.water.waves import spread_waves
 
 POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
@@ -39,7 +43,8 @@ class System(NamedTuple):
 
     model: Model
     thrusters: Thrusters
-    current: Array  # (3,) velocity of the water in the world
+    current: Array  # (3,) velocity of the water in the world, its constant part
+    water: Water | None = None  # what moves beside it
 
 
 class Scratch(NamedTuple):
@@ -48,12 +53,14 @@ class Scratch(NamedTuple):
     work: Array  # of the kernels
     stage: Array  # (4, nx) derivatives of the Runge-Kutta stages
     trial: Array  # (nx,)
+    wet: Array | None = None  # of `kernels.waves`, where there are waves
 
 
 def make_scratch(system: System) -> Scratch:
     """Scratch tables for a system."""
-    size = state_size(system)
-    return Scratch(make_workspace(system.model), np.empty((4, size)), np.empty(size))
+    size, water = state_size(system), system.water
+    wet = None if water is None or water.bodies is None else water.bodies.copy()
+    return Scratch(make_workspace(system.model), np.empty((4, size)), np.empty(size), wet)
 
 
 def state_size(system: System) -> int:
@@ -61,9 +68,16 @@ def state_size(system: System) -> int:
     return int(JOINTS + 2 * system.model[HULL, N_JOINTS]) + len(system.thrusters)
 
 
-def make_system(vehicle: Vehicle, current: Sequence[float] = (0.0, 0.0, 0.0)) -> System:
-    """The system of a vehicle in a current (3,), m/s in the world."""
-    return System(build_model(vehicle), build_thrusters(vehicle), np.array(current, dtype=float))
+def make_system(
+    vehicle: Vehicle, current: Sequence[float] | CurrentConfig = (0.0, 0.0, 0.0)
+) -> System:
+    """The system of a vehicle in a constant current (3,), m/s in the world, or in moving water."""
+    constant, water = current, None
+    if isinstance(current, CurrentConfig):
+        constant, water = current.constant_ned_m_s, build_water(vehicle, current)
+    return System(
+        build_model(vehicle), build_thrusters(vehicle), np.array(constant, dtype=float), water
+    )
 
 
 def make_state(
@@ -85,16 +99,17 @@ def make_state(
 
 
 @kernel
-def advance(system, x, thrust_command, effort, step, scratch, states, rates):
+def advance(system, x, thrust_command, effort, step, scratch, states, rates, time):
     """Integrate by classical Runge-Kutta steps of `step` s under constant commands.
 
-    x (nx,) becomes the state at the end. Row k of states (steps+1, nx) is the state after k steps
-    and row k of rates its derivative under these commands: thrust (m,) N, joint torque (n,) N m.
+    x (nx,) is the state at `time`, s, and becomes the state at the end. Row k of states
+    (steps+1, nx) is the state after k steps and row k of rates its derivative under these commands:
+    thrust (m,) N, joint torque (n,) N m.
     `simulate` is built on it. Raises ValueError for arrays that do not fit.
     """
-    model, thrusters, current = system
+    model, thrusters, current, water = system
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
-    work, stage, trial = scratch
+    work, stage, trial, wet = scratch
     size = JOINTS + 2 * n + m
     if n != np.int64(model[HULL, N_JOINTS]) or m != thrusters.shape[0] or current.shape[0] != 3:
         raise ValueError("effort needs a value a joint, thrust_command a thruster, current three")
@@ -103,12 +118,17 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
     if rates.shape[0] != states.shape[0] or not step >= 0.0:
         raise ValueError("states and rates need as many rows, and step must be >= 0")
     for s in range(last + 1):
-        derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, stage, FIRST)
+        now = time + s * step
+        derivative(
+            model, thrusters, current, water, now, n, m,
+            x, thrust_command, effort, work, wet, stage, FIRST,
+        )  # fmt: skip
         _record(x, stage, states, rates, s)
         if s < last:
             finish_step(
-                model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
-            )
+                model, thrusters, current, water, now, n, m,
+                x, thrust_command, effort, step, work, wet, stage, trial,
+            )  # fmt: skip
 
 
 @inner
@@ -121,15 +141,19 @@ def _record(x, stage, states, rates, s):
 
 @inner
 def finish_step(
-    model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
-):
+    model, thrusters, current, water, time, n, m,
+    x, thrust_command, effort, step, work, wet, stage, trial,
+):  # fmt: skip
     """Advance x by one step; row 0 of stage holds its derivative."""
     size = JOINTS + 2 * n + m
     for k in range(1, 4):
         part = step if k == 3 else 0.5 * step
         for i in range(size):
             trial[i] = x[i] + part * stage[k - 1, i]
-        derivative(model, thrusters, current, n, m, trial, thrust_command, effort, work, stage, k)
+        derivative(
+            model, thrusters, current, water, time + part, n, m,
+            trial, thrust_command, effort, work, wet, stage, k,
+        )  # fmt: skip
     for i in range(size):
         x[i] += step / 6.0 * (stage[0, i] + 2.0 * (stage[1, i] + stage[2, i]) + stage[3, i])
     a, b, c, d = _unit_quaternion(x)
@@ -137,13 +161,17 @@ def finish_step(
 
 
 @inner
-def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
-    """Row k of out: the derivative of the state x under these commands."""
+def derivative(
+    model, thrusters, current, water, time, n, m, x, thrust_command, effort, work, wet, out, k
+):
+    """Row k of out: the derivative of the state x at a time, s, under these commands."""
     a, b, c, d = _unit_quaternion(x)
     nu_r = spatial_at(x, VELOCITY)
     rates = pose_rates(nu_r, a, b, c, d)
+    moving = stream_of(water, time)
+    drift = carried(current, moving)
     for i in range(3):  # over ground: the water carries it along
-        out[k, POSITION + i] = rates[i] + current[i]
+        out[k, POSITION + i] = rates[i] + drift[i]
     for i in range(3, 7):
         out[k, POSITION + i] = rates[i]
     for i in range(1, n + 1):
@@ -155,7 +183,10 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
     down = down_in_body(a, b, c, d)
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
     wrench = plus(wrench, load_wrench(tether_load(model, n, x[DEPTH]), down))
-    nu_r_dot = accelerate(model, work, n, down, nu_r, wrench)
+    quat = a, b, c, d
+    spread_waves(model, water, wet, work, n, spatial_at(x, POSITION)[:3], quat, drift, time)
+    down = apparent_down(water, moving, quat, down)
+    nu_r_dot = accelerate(model, work, wet, n, down, nu_r, wrench)
     store_spatial(out, k, VELOCITY, nu_r_dot)
     for i in range(1, n + 1):
         out[k, JOINTS + n + i - 1] = work[i, RATE]

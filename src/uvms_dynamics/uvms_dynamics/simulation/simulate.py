@@ -20,19 +20,26 @@ from uvms_dynamics.simulation.integrator import (
 
 
 def simulate(
-    system: System, x: Array, thrust_command: Array, effort: Array, step: float, steps: int
+    system: System,
+    x: Array,
+    thrust_command: Array,
+    effort: Array,
+    step: float,
+    steps: int,
+    start_s: float = 0.0,
 ) -> Array:
     """States (steps+1, nx) from the state x (nx,) on, by Runge-Kutta steps of `step` s.
 
     `integrator` defines the layout of the state; `make_state` makes one. thrust_command (m,) N and
-    effort (n,) N m are constant. Raises ConfigError for shapes, a step or a number of
+    effort (n,) N m are constant; x is the state at start_s, which counts where the water's motion
+    depends on time. Raises ConfigError for shapes, a step or a number of
     steps that do not fit. It does not check that the step is stable; `Plant` does.
     """
     _check_length(step, steps)
     start, thrust, torque = _fitting(system, x, thrust_command, effort, ())
     states = np.empty((steps + 1, len(start)))
     rates, scratch = np.empty_like(states), make_scratch(system)
-    advance(system, start, thrust, torque, float(step), scratch, states, rates)
+    advance(system, start, thrust, torque, float(step), scratch, states, rates, float(start_s))
     return states
 
 
@@ -42,13 +49,16 @@ def advance_batch(
     """States (b, nx) of b simulations after `steps` Runge-Kutta steps of `step` s.
 
     x (b, nx) are their states, thrust_command (b, m) N and effort (b, n) N m their constant
-    commands; vehicle and current are common to all. Each result is that of `simulate` up to
-    rounding. One thread, eight simulations in a vector of the processor: 1024 take less than half
-    the time that they take one by one. Raises ConfigError as `simulate` does.
+    commands; vehicle and current are common to all, and the current is constant. Each result is
+    that of `simulate` up to rounding. One thread, eight simulations in a vector of the processor:
+    1024 take less than half the time that they take one by one. Raises ConfigError as `simulate`
+    does, and for a current that is not constant.
     """
     _check_length(step, steps)
+    if system.water is not None:
+        raise ConfigError("system: its water moves; advance_batch knows constant currents only")
     out, thrust, torque = _fitting(system, x, thrust_command, effort, (len(x),))
-    _advance_groups(*system, out, thrust, torque, float(step), steps)
+    _advance_groups(*system[:3], out, thrust, torque, float(step), steps)
     return out
 
 
@@ -92,10 +102,14 @@ def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, 
         _take(thrust_command, first, lanes_thrust)
         _take(effort, first, lanes_effort)
         for _ in range(steps):
-            derivative(model, thrusters, current, n, m, state, thrust, torque, work, stage, FIRST)
+            derivative(
+                model, thrusters, current, None, 0.0, n, m,
+                state, thrust, torque, work, None, stage, FIRST,
+            )  # fmt: skip
             finish_step(
-                model, thrusters, current, n, m, state, thrust, torque, step, work, stage, trial
-            )
+                model, thrusters, current, None, 0.0, n, m,
+                state, thrust, torque, step, work, None, stage, trial,
+            )  # fmt: skip
         for lane in range(min(LANES, count - first)):
             for k in range(x.shape[1]):
                 x[first + lane, k] = lanes_x[k, lane]

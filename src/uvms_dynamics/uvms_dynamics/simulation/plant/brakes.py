@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels import inverse_dynamics, joint_passive_torque
+from uvms_dynamics.kernels.inverse import inverse_dynamics_in
 from uvms_dynamics.kernels.layout import ROTOR
 from uvms_dynamics.simulation.integrator import (
     JOINTS,
@@ -25,6 +26,7 @@ from uvms_dynamics.simulation.integrator import (
     System,
     advance,
 )
+from uvms_dynamics.simulation.water.surroundings import surroundings
 
 Flags = NDArray[np.bool_]
 
@@ -45,18 +47,22 @@ class Brakes:
         self._locked = system._replace(model=system.model.copy())
         size = scratch.trial.shape[0]
         self._row, self._rate = np.empty((2, size)), np.empty((2, size))
+        self._now = 0.0  # s
 
     @property
     def exist(self) -> bool:
         """Whether any joint has a brake."""
         return bool(self._torque.any())
 
-    def advance(self, x: Array, thrust: Array, step: float, states: Array, rates: Array) -> None:
+    def advance(
+        self, x: Array, thrust: Array, step: float, states: Array, rates: Array, time: float
+    ) -> None:
         """As `integrator.advance` with no drive torque and all brakes engaged.
 
         x (nx,) becomes the state at the end, rows of states and rates (steps+1, nx) those after
-        each step of `step` s; thrust (m,) N.
+        each step of `step` s; thrust (m,) N; x begins at `time`, s.
         """
+        self._now = time
         effort, rate = self._engage(x, thrust, may_slip=True)
         states[0], rates[0] = x, rate
         for k in range(1, len(states)):
@@ -67,7 +73,8 @@ class Brakes:
         """One step, in pieces that end where a joint comes to rest; what `_engage` says then."""
         events = _EVENTS_A_JOINT * self._n
         while True:
-            step -= self._until_rest(x, thrust, effort, step)
+            done = self._until_rest(x, thrust, effort, step)
+            step, self._now = step - done, self._now + done
             events -= 1
             effort, rate = self._engage(x, thrust, may_slip=step <= 0.0 or events > 0)
             if step <= 0.0:
@@ -110,7 +117,11 @@ class Brakes:
         q, q_dot = x[JOINTS : JOINTS + n], x[JOINTS + n : JOINTS + 2 * n]
         quat = x[QUATERNION:VELOCITY] / np.linalg.norm(x[QUATERNION:VELOCITY])
         nu_dot, q_ddot = rate[VELOCITY:JOINTS], rate[JOINTS + n : JOINTS + 2 * n]
-        needed = inverse_dynamics(model, quat, x[VELOCITY:JOINTS], nu_dot, q, q_dot, q_ddot)
+        motion = x[VELOCITY:JOINTS], nu_dot, q, q_dot, q_ddot
+        if (moving := surroundings(self._system, x, self._now)) is None:
+            needed = inverse_dynamics(model, quat, *motion)
+        else:
+            needed = inverse_dynamics_in(model, moving.wet, moving.down, *motion)
         return needed[6:] - joint_passive_torque(model, q, q_dot)
 
     def _derivative(self, x: Array, thrust: Array, effort: Array) -> Array:
@@ -141,7 +152,5 @@ class Brakes:
         return turned_back
 
     def _integrate(self, x: Array, thrust: Array, effort: Array, step: float, steps: int) -> None:
-        rows = slice(0, steps + 1)
-        advance(
-            self._locked, x, thrust, effort, step, self._scratch, self._row[rows], self._rate[rows]
-        )
+        tables = self._scratch, self._row[: steps + 1], self._rate[: steps + 1]
+        advance(self._locked, x, thrust, effort, step, *tables, self._now)

@@ -1,9 +1,7 @@
 """What a run of the plant starts from and how it is integrated."""
 
-from typing import Annotated
-
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
 
 from uvms_core.errors import ConfigError
 from uvms_core.signals import Array, to_nanoseconds
@@ -19,12 +17,8 @@ from uvms_core.vehicle.postures import (
 )
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
-
-Turns = Annotated[float, Field(ge=-720.0, le=720.0)]
-"""An attitude in degrees: more than two turns is a mistake."""
-
-Speed = Annotated[float, Field(ge=-100.0, le=100.0)]
-"""Of vehicle or water, m/s or rad/s: several times the fastest that moves under water."""
+from uvms_dynamics.simulation.water import CurrentConfig, velocity_at_start
+from uvms_dynamics.simulation.water.config import Speed, Turns
 
 
 class PlantConfig(StartConfig):
@@ -47,8 +41,40 @@ class PlantConfig(StartConfig):
         " by joint name for some; empty: the posture",
     )
     current_ned_m_s: tuple[Speed, Speed, Speed] = Field(
-        (0.0, 0.0, 0.0), description="velocity of the water in map_ned, m/s"
+        (0.0, 0.0, 0.0),
+        description="velocity of the water in map_ned, m/s: a short name of"
+        " `current.constant_ned_m_s`",
     )
+    current: CurrentConfig = Field(
+        CurrentConfig(), description="how the water moves: the sum of what is given"
+    )
+
+    @property
+    def flow(self) -> CurrentConfig:
+        """How the water moves, with the constant current under whichever name it is given."""
+        if not any(self.current_ned_m_s):
+            return self.current
+        return self.current.model_copy(update={"constant_ned_m_s": self.current_ned_m_s})
+
+    @model_validator(mode="after")
+    def _one_constant_current(self) -> "PlantConfig":
+        if any(self.current_ned_m_s) and any(self.current.constant_ned_m_s):
+            raise ValueError(
+                "current_ned_m_s is a short name of current.constant_ned_m_s: give only one of"
+                f" {list(self.current_ned_m_s)} and {list(self.current.constant_ned_m_s)}"
+            )
+        return self
+
+    @model_validator(mode="after")
+    def _above_the_bottom(self) -> "PlantConfig":
+        depth = self.initial_position_m[2]
+        for i, wave in enumerate(self.current.waves):
+            if depth >= wave.water_depth_m:
+                raise ValueError(
+                    f"current.waves.{i}.water_depth_m: {wave.water_depth_m:g} m is not below"
+                    f" the start, which is {depth:g} m deep (initial_position_m)"
+                )
+        return self
 
 
 def steps_in(period: int, config: PlantConfig, what: str) -> int:
@@ -92,6 +118,6 @@ def initial_state(vehicle: Vehicle, config: PlantConfig) -> Array:
     state[:QUATERNION] = config.initial_position_m
     state[QUATERNION:VELOCITY] = quaternion
     state[VELOCITY:JOINTS] = config.initial_velocity
-    state[VELOCITY : VELOCITY + 3] -= quat_to_matrix(quaternion).T @ config.current_ned_m_s
+    state[VELOCITY : VELOCITY + 3] -= quat_to_matrix(quaternion).T @ velocity_at_start(config.flow)
     state[JOINTS : JOINTS + vehicle.n_joints] = initial_joints(vehicle, config)
     return state

@@ -13,6 +13,8 @@ from uvms_dynamics.model.vehicle_table import Model
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state
 from uvms_dynamics.simulation.plant.stiffest_poses import stiffest_poses, stop_depths
+from uvms_dynamics.simulation.water import CurrentConfig
+from uvms_dynamics.simulation.water.tables import greatest_speed
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 _LINEAR = 3  # so many of them are translations
@@ -52,6 +54,8 @@ def operating_points(vehicle: Vehicle, model: Model, config: PlantConfig) -> Ite
     moving = with_joints(start, stowed, rates)
     yield _held(model, "with the joints at their rate limits", moving, len(stowed))
     for name, state in _at_top_speed(vehicle, with_joints(start, stowed)):
+        yield _held(model, name, state, len(stowed))
+    for name, state in _in_fastest_water(config, with_joints(start, stowed)):
         yield _held(model, name, state, len(stowed))
 
 
@@ -107,6 +111,19 @@ def _at_top_speed(vehicle: Vehicle, rest: Array) -> Iterator[tuple[str, Array]]:
         state[VELOCITY + k] = speed = min(speed, _FASTEST[k])
         unit = "m/s" if k < _LINEAR else "rad/s"
         yield f"at {speed:.3g} {unit} of {axis}", state
+
+
+def _in_fastest_water(config: PlantConfig, rest: Array) -> Iterator[tuple[str, Array]]:
+    """Held against the greatest flow along each axis, where it is not that of the start."""
+    flow = config.flow
+    if flow == CurrentConfig(constant_ned_m_s=flow.constant_ned_m_s):
+        return
+    speed = greatest_speed(flow)
+    for k, axis in enumerate(AXES[:_LINEAR]):
+        state = rest.copy()
+        state[VELOCITY:JOINTS] = 0.0
+        state[VELOCITY + k] = speed
+        yield f"in water of {speed:.3g} m/s along {axis}", state
 
 
 def _terminal_speed(force: float, linear: float, quadratic: float) -> float:

@@ -13,12 +13,11 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.layout import EFFORT
-from uvms_dynamics.model.vehicle_table import build_model
 from uvms_dynamics.simulation.integrator import (
     JOINTS,
-    System,
     advance,
     make_scratch,
+    make_system,
 )
 from uvms_dynamics.simulation.plant.brakes import Brakes
 from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state, steps_in
@@ -32,7 +31,7 @@ from uvms_dynamics.simulation.plant.truth import (
 )
 from uvms_dynamics.simulation.sensors import SensorFrame, SensorSuite
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
-from uvms_dynamics.simulation.thrusters import build_thrusters
+from uvms_dynamics.simulation.water.surroundings import surroundings
 
 
 class Plant:
@@ -50,8 +49,7 @@ class Plant:
         self._step = to_nanoseconds(config.step_s)
         steps = steps_in(self._period, config, "control_period_s")
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
-        current = np.array(config.current_ned_m_s, dtype=float)
-        self._system = System(build_model(vehicle), build_thrusters(vehicle), current)
+        self._system = make_system(vehicle, config.flow)
         self._scratch = make_scratch(self._system)
         self._brakes = Brakes(vehicle, self._system, self._scratch)
         self._state = initial_state(vehicle, config)
@@ -75,14 +73,15 @@ class Plant:
 
         Accelerations are those just before the stamp, under the commands of the past period.
         """
-        state, system = self._state, self._system
+        stamp, state, system = self._stamp, self._state, self._system
+        moving = surroundings(system, state, to_seconds(stamp))
+        drift = system.current if moving is None else moving.velocity
         return PlantTruth(
-            true_odometry(self._stamp, state, system.current),
-            true_joints(self._stamp, state, self._effort),
-            true_disturbance(
-                self._stamp, system.model, state, self._rate, system.current, self._tethered
-            ),
+            true_odometry(stamp, state, drift),
+            true_joints(stamp, state, self._effort),
+            true_disturbance(stamp, system.model, state, self._rate, drift, self._tethered, moving),
             self._applied(),
+            drift.copy() if moving is None else drift + moving.orbital[:3],
         )
 
     def step(self, thruster: ThrusterCommand | None, joints: JointCommand | None) -> None:
@@ -132,15 +131,17 @@ class Plant:
     def _integrate(self, thrust: Array, states: Array, rates: Array) -> None:
         """As many steps as the tables have rows after the first; the last is at the stamp."""
         step = to_seconds(self._step)
+        began = to_seconds(self._stamp - (len(states) - 1) * self._step)
         if self._safe[1] and self._brakes.exist and len(states) > 1:
-            self._brakes.advance(self._state, thrust, step, states, rates)
+            self._brakes.advance(self._state, thrust, step, states, rates, began)
         else:
-            scratch = self._scratch
-            advance(self._system, self._state, thrust, self._effort, step, scratch, states, rates)
+            rows = self._scratch, states, rates
+            advance(self._system, self._state, thrust, self._effort, step, *rows, began)
         self._rate = rates[-1].copy()
         check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)
 
     def _sample(self, stamps: tuple[int, ...], states: Array, rates: Array) -> SensorFrame:
-        trajectory = Trajectory(stamps, states, rates, self._system.current)
+        system = self._system
+        trajectory = Trajectory(stamps, states, rates, system.current, system.water)
         joints = true_joints(self._stamp, self._state, self._effort)
         return self._sensors.sample(trajectory, joints.position, joints.velocity, joints.effort)

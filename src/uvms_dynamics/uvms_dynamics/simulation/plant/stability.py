@@ -23,11 +23,11 @@ from uvms_dynamics.simulation.integrator import (
     System,
     advance,
     make_scratch,
+    make_system,
 )
 from uvms_dynamics.simulation.plant.config import PlantConfig
 from uvms_dynamics.simulation.plant.operating_points import AXES, Point, operating_points
 from uvms_dynamics.simulation.plant.stiffest_poses import stop_depths
-from uvms_dynamics.simulation.thrusters import build_thrusters
 
 Complex = NDArray[np.complex128]
 
@@ -77,8 +77,7 @@ def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
 
 def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:
     """The greatest stable step over all operating points; `config` gives start and current."""
-    current = np.array(config.current_ned_m_s, dtype=float)
-    system = System(build_model(vehicle), build_thrusters(vehicle), current)
+    system = make_system(vehicle, config.flow.constant_ned_m_s)
     points = list(operating_points(vehicle, system.model, config))
     slopes = np.array([jacobian(vehicle, system, point) for point in points])
     # A state without finite rates does not depend on the step: the plant reports it.
@@ -103,7 +102,7 @@ def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
     row, rate = np.empty((1, len(point.state))), np.empty((1, len(point.state)))
 
     def rates(x: Array) -> Array:
-        advance(system, x, thrust, point.effort, 0.0, scratch, row, rate)
+        advance(system, x, thrust, point.effort, 0.0, scratch, row, rate, 0.0)
         return rate[0, QUATERNION:].copy()
 
     columns = []

@@ -7,7 +7,7 @@ from uvms_core.signals import Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.simulation.sensors.model import SensorModel
-from uvms_dynamics.simulation.sensors.mounting import SPEED, Trajectory, at_lever
+from uvms_dynamics.simulation.sensors.mounting import SPEED, Trajectory
 
 
 class DvlSensor(SensorModel):
@@ -26,14 +26,7 @@ class DvlSensor(SensorModel):
         rows = trajectory.due(self.period)
         if not rows:
             return ()
-        motion = at_lever(
-            trajectory.states,
-            trajectory.rates,
-            np.array(rows, dtype=np.int64),
-            trajectory.current,
-            self._lever,
-            0.0,
-        )
+        motion = trajectory.at_lever(rows, self._lever, 0.0)
         return tuple(
             self._read(trajectory.stamps[row], motion[k, SPEED]) for k, row in enumerate(rows)
         )

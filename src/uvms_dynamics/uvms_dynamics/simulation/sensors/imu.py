@@ -16,7 +16,6 @@ from uvms_dynamics.simulation.sensors.mounting import (
     TURN,
     VELOCITY,
     Trajectory,
-    at_lever,
 )
 
 
@@ -44,14 +43,7 @@ class ImuSensor(SensorModel):
     def sample(self, trajectory: Trajectory) -> tuple[ImuSample, ...]:
         """Samples that are due on the trajectory."""
         rows = trajectory.due(self.period)
-        motion = at_lever(
-            trajectory.states,
-            trajectory.rates,
-            np.array(rows, dtype=np.int64),
-            trajectory.current,
-            self._lever,
-            self._gravity,
-        )
+        motion = trajectory.at_lever(rows, self._lever, self._gravity)
         draws = self.rng.standard_normal((len(rows), 2, 9))
         return tuple(
             self._read(trajectory.stamps[row], trajectory.states[row], motion[k], draws[k])

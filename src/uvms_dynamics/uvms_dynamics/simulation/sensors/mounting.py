@@ -4,11 +4,13 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_core.signals import Array
+from uvms_core.signals import Array, to_seconds
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.kernels.spatial import add_vectors, cross
 from uvms_dynamics.simulation.integrator import QUATERNION, VELOCITY
+from uvms_dynamics.simulation.water import Water
+from uvms_dynamics.simulation.water.stream import stream_at
 
 PLACE = slice(0, 3)
 SPEED = slice(3, 6)
@@ -25,11 +27,25 @@ class Trajectory:
     stamps: tuple[int, ...]
     states: Array  # (k, nx)
     rates: Array  # (k, nx)
-    current: Array  # (3,) velocity of the water in the world
+    current: Array  # (3,) velocity of the water in the world, its constant part
+    water: Water | None = None  # what moves beside it
 
     def due(self, period: int) -> list[int]:
         """Rows whose stamp is a multiple of the period, ns."""
         return [row for row, stamp in enumerate(self.stamps) if stamp % period == 0]
+
+    def at_lever(self, rows: list[int], lever: Array, gravity: float) -> Array:
+        """Motion (k, 12) at a lever arm (3,) at some rows, columns as above."""
+        which = np.array(rows, dtype=np.int64)
+        motion = at_lever(self.states, self.rates, which, self.current, lever, gravity)
+        if self.water is None or not rows:
+            return motion
+        times = np.array([to_seconds(self.stamps[row]) for row in rows])
+        for row, moved, flow in zip(rows, motion, stream_at(self.water, times), strict=True):
+            to_body = quat_to_matrix(self.states[row, QUATERNION:VELOCITY]).T
+            moved[SPEED] += to_body @ flow[:3]
+            moved[FORCE] += to_body @ flow[3:]
+        return motion
 
 
 @kernel
@@ -37,7 +53,7 @@ def at_lever(states, rates, rows, current, lever, gravity):
     """Position, velocity over ground, specific force and turn rate at a lever arm, (k, 12).
 
     v = v_o + omega x r and f = a_o + omega_dot x r + omega x (omega x r) - R^T g, with
-    a_o = v_r_dot + omega x v_r in the frame of the water, which is inertial too.
+    a_o = v_r_dot + omega x v_r in the frame of the current, which is inertial too.
     """
     out = np.empty((rows.shape[0], 12))
     arm = (lever[0], lever[1], lever[2])
