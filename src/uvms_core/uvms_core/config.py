@@ -7,6 +7,7 @@ from its fields, so that a gain has one name, one default and one description.
 from typing import get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic.fields import FieldInfo
 
 from uvms_core.errors import ConfigError, UvmsError
 
@@ -73,6 +74,11 @@ def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
         inner = model.field_model(str(part)) if issubclass(model, Config) else None
         model = inner or model
     return sorted(model.model_fields)
+
+
+def holds_sections(field: FieldInfo) -> bool:
+    """Whether a field holds sections: one, or a list of them."""
+    return _inner_model(field.annotation) is not None
 
 
 def _inner_model(annotation) -> type[BaseModel] | None:

@@ -1,5 +1,9 @@
-"""ROS parameters from a configuration's fields: name, type, default, bounds, description."""
+"""ROS parameters from a configuration's fields: name, type, default, bounds, description.
 
+A list of sections, which ROS does not know, is a list of texts: each section in JSON.
+"""
+
+import json
 from collections.abc import Iterator
 from typing import Any, TypeVar
 
@@ -10,7 +14,8 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from uvms_core.config import Config, validated
+from uvms_core.config import Config, holds_sections, validated
+from uvms_core.errors import ConfigError
 from uvms_core.plugin import PluginConfig
 
 C = TypeVar("C", bound=Config)
@@ -72,7 +77,7 @@ def _declare(
             _declare_field(node, name, default, field)
         value = node.get_parameter_or(name).value
         if value is not None:
-            _store(values, path, value)
+            _store(values, path, _sections(name, value) if holds_sections(field) else value)
 
 
 def _resolved(config: Config) -> Config:
@@ -81,7 +86,9 @@ def _resolved(config: Config) -> Config:
 
 def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
     if default == ():
-        node.declare_parameter(name, Parameter.Type.DOUBLE_ARRAY, _descriptor(field))
+        kind = Parameter.Type
+        kind = kind.STRING_ARRAY if holds_sections(field) else kind.DOUBLE_ARRAY
+        node.declare_parameter(name, kind, _descriptor(field))
     else:
         node.declare_parameter(name, _to_ros(default), _descriptor(field))
 
@@ -97,8 +104,17 @@ def _leaves(
             yield (*prefix, name), field, value
 
 
+def _sections(name: str, texts: Any) -> list[Any]:
+    try:
+        return [json.loads(text) for text in texts]
+    except ValueError as fault:
+        raise ConfigError(f"{name}: must be sections in JSON, a text each; {fault}") from fault
+
+
 def _to_ros(value: Any) -> Any:
     if isinstance(value, (tuple, list)):
+        if any(isinstance(item, BaseModel) for item in value):
+            return [item.model_dump_json() for item in value]
         numbers = all(isinstance(item, (int, float)) for item in value)
         return [float(item) if numbers else item for item in value]
     return value
