@@ -11,6 +11,7 @@ from uvms_dynamics.kernels.spatial import add_vectors, cross
 from uvms_dynamics.simulation.integrator import QUATERNION, VELOCITY
 from uvms_dynamics.simulation.water import Water
 from uvms_dynamics.simulation.water.stream import stream_at
+from uvms_dynamics.simulation.water.waves import wave_head
 
 PLACE = slice(0, 3)
 SPEED = slice(3, 6)
@@ -46,6 +47,12 @@ class Trajectory:
             moved[SPEED] += to_body @ flow[:3]
             moved[FORCE] += to_body @ flow[3:]
         return motion
+
+    def wave_head(self, row: int, place: Array) -> float:
+        """Pressure by waves at a place (3,) in the world, as metres of water."""
+        if self.water is None or self.water.waves is None:
+            return 0.0
+        return float(wave_head(self.water.waves, place, to_seconds(self.stamps[row])))
 
 
 @kernel

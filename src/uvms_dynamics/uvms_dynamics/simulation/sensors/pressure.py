@@ -12,7 +12,11 @@ from uvms_dynamics.simulation.sensors.mounting import QUATERNION, VELOCITY, Traj
 
 
 class PressureSensor(SensorModel):
-    """Absolute pressure at the lever arm: p_atm + rho g z in the water, with bias and noise."""
+    """Absolute pressure at the lever arm: p_atm + rho g z in the water, with bias and noise.
+
+    Under waves with their linear pressure. The pressure that accelerates a uniform stream has no
+    place where it is zero, and is left out.
+    """
 
     type = pressure.TYPE
 
@@ -33,7 +37,8 @@ class PressureSensor(SensorModel):
     def _read(self, trajectory: Trajectory, row: int) -> PressureSample:
         state = trajectory.states[row]
         rotation = quat_to_matrix(state[QUATERNION:VELOCITY])
-        depth = state[2] + float(rotation[2] @ self._lever)
+        place = state[:3] + rotation @ self._lever
+        depth = float(place[2]) + trajectory.wave_head(row, place)
         error = self._bias + self._noise * self.rng.standard_normal()
         absolute = self._surface + self._gradient * max(depth, 0.0) + error
         return PressureSample(trajectory.stamps[row], absolute, self._variance)

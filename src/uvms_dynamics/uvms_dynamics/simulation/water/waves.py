@@ -85,6 +85,22 @@ def wave_motion_at(waves, places, carried, times):
     return out
 
 
+@kernel
+def wave_head(waves, place, time):
+    """Pressure by waves at a place (3,) in the world and a time, s, as metres of water.
+
+    Linear: a cosh k (h - z) / cosh k h cos psi (Newman 1977, sec. 6.2).
+    """
+    head = 0.0
+    for i in range(waves.shape[0]):
+        k, depth = waves[i, 0], waves[i, 6]
+        psi = k * (waves[i, 2] * place[0] + waves[i, 3] * place[1])
+        _, cosine = sine_cosine(psi - waves[i, 1] * time + waves[i, 4])
+        across, _ = _shape(k, depth, place[2])
+        head += waves[i, 5] * across * np.tanh(k * depth) * cosine
+    return head
+
+
 def spread_waves(model, water, wet, work, n, place, quat, carried, time):
     """Set the flow in `wet` to that at each body; the workspace holds the joints' angles."""
 
