@@ -43,7 +43,7 @@ def without_arm(vehicle: Vehicle) -> dict[str, Any]:
 def drift(
     vehicle: Vehicle, current: CurrentConfig, duration: float, step: float = 0.005, **start: Any
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Times (k,), positions (k, 3) and velocities (k, 3) over ground in the world of a free body."""
+    """Times (k,), and positions and velocities (k, 3) of a free body over ground in the world."""
     system, n = make_system(vehicle, current), vehicle.n_joints
     x = make_state([0.0] * n, vehicle.n_thrusters, **({"position": (0.0, 0.0, 10.0)} | start))
     idle = np.zeros(vehicle.n_thrusters), np.zeros(n)
