@@ -86,8 +86,8 @@ def _resolved(config: Config) -> Config:
 
 def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
     if default == ():
-        kind = Parameter.Type
-        kind = kind.STRING_ARRAY if holds_sections(field) else kind.DOUBLE_ARRAY
+        numbers, texts = Parameter.Type.DOUBLE_ARRAY, Parameter.Type.STRING_ARRAY
+        kind = texts if holds_sections(field) else numbers
         node.declare_parameter(name, kind, _descriptor(field))
     else:
         node.declare_parameter(name, _to_ros(default), _descriptor(field))
