@@ -11,12 +11,11 @@ from numba import njit
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics import Model, build_model
+from uvms_dynamics import Model
 from uvms_dynamics.kernels.forward import forward_dynamics_into
 from uvms_dynamics.kernels.motion import make_workspace
-from uvms_dynamics.simulation import advance_batch
-from uvms_dynamics.simulation.integrator import System, advance, make_scratch
-from uvms_dynamics.simulation.thrusters import build_thrusters
+from uvms_dynamics.simulation import CurrentConfig, advance_batch, make_system
+from uvms_dynamics.simulation.integrator import advance, make_scratch
 
 STEP_S = 0.005
 STEPS = 50
@@ -26,6 +25,7 @@ BATCH_STEPS = 5
 """Runge-Kutta steps of each simulation in one call of `stepping_batch`."""
 
 THRUST_N = 2.0
+CURRENT = CurrentConfig(constant_ned_m_s=(0.2, -0.1, 0.0))
 
 
 @njit(cache=True)
@@ -44,14 +44,16 @@ def forward_loop(model: Model, motions: list[Motion]) -> tuple[Callable[[], None
     return lambda: _forward_all(model, quat, nu, q, q_dot, tau, out), out
 
 
-def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[], Array]:
+def stepping(
+    vehicle: Vehicle, motion: Motion, halvings: int = 0, current: CurrentConfig = CURRENT
+) -> Callable[[], Array]:
     """A call that makes STEPS Runge-Kutta steps from a motion; returns the last state.
 
     With `halvings` it makes more and shorter ones for the same time. The whole plant: thrusters
     with lag, friction, end stops; states and rates are recorded.
     """
     steps, step = STEPS * 2**halvings, STEP_S / 2**halvings
-    system, start = _system(vehicle), _state(vehicle, motion)
+    system, start = make_system(vehicle, current), _state(vehicle, motion)
     scratch, thrust = make_scratch(system), np.full(vehicle.n_thrusters, THRUST_N)
     effort = motion.tau[6:].copy()
     states, rates = np.empty((2, steps + 1, len(start)))
@@ -67,15 +69,11 @@ def stepping(vehicle: Vehicle, motion: Motion, halvings: int = 0) -> Callable[[]
 
 def stepping_batch(vehicle: Vehicle, motions: list[Motion]) -> Callable[[], Array]:
     """A call that makes BATCH_STEPS steps from each of many motions; returns their last states."""
-    system = _system(vehicle)
+    system = make_system(vehicle, CURRENT)
     starts = np.array([_state(vehicle, motion) for motion in motions])
     thrust = np.full((len(motions), vehicle.n_thrusters), THRUST_N)
     effort = np.array([motion.tau[6:] for motion in motions])
     return lambda: advance_batch(system, starts, thrust, effort, STEP_S, BATCH_STEPS)
-
-
-def _system(vehicle: Vehicle) -> System:
-    return System(build_model(vehicle), build_thrusters(vehicle), np.array([0.2, -0.1, 0.0]))
 
 
 def _state(vehicle: Vehicle, motion: Motion) -> Array:

@@ -189,7 +189,7 @@ def test_a_neutral_body_is_a_particle_of_the_water_in_waves(current, damping):
 
 
 def test_a_neutral_body_has_stokes_drift():
-    """a^2 omega k cosh(2 k (h - z)) / (2 sinh^2 k h) to the second order (Newman 1977, 6.8)."""
+    """a^2 omega k cosh(2 k (h - z)) / (2 sinh^2 k h) to the second order (Newman 1977, ch. 6)."""
     wave = WAVE | {"height_m": 0.2, "direction_deg": 0.0}
     h, omega, a, z = 12.0, 2.0 * np.pi / 5.0, 0.1, 3.0
     k = wave_number(5.0, h, GRAVITY)
@@ -217,7 +217,7 @@ def held(vehicle, current, place, time, q=None):
 
 @pytest.mark.parametrize("mass", [0.6 * DISPLACED, DISPLACED, 1.7 * DISPLACED])
 def test_a_sphere_in_an_accelerating_stream_feels_one_and_a_half_times_its_water(mass):
-    """(1 + C_m) rho V A with C_m = 1/2, whatever it weighs (Newman 1977, sec. 4.17)."""
+    """(1 + C_m) rho V A with C_m = 1/2, whatever it weighs (Newman 1977, ch. 4)."""
     for time in (0.3, 1.0, 2.2):
         force, _, _ = held(ball(mass), CurrentConfig(oscillating=[OSCILLATING]), (0, 0, 9.0), time)
         rate = flow_at(CurrentConfig(oscillating=[OSCILLATING]), np.zeros(3), time, GRAVITY).rate

@@ -3,7 +3,7 @@
 Velocities and accelerations of the bodies are relative to the frame that moves with the uniform
 part of the flow. A table `wet` has a row for each body with what it is to the water and with the
 rest of the flow at its centre of buoyancy: velocity w and material acceleration w' = Dw/Dt, in the
-body's own axes, taken as uniform over the body (long waves; Newman 1977, sec. 6.19). Then
+body's own axes, taken as uniform over the body (long waves; Newman 1977, ch. 6). Then
 
     added mass        M_A (v - w)' + C_A(v - w) (v - w)    with (v - w)' = v' - (w' - omega x w)
     drag              D(v - w) (v - w)

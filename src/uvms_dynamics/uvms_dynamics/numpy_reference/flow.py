@@ -1,6 +1,6 @@
 """How the water moves, in plain numpy, to compare the kernels with.
 
-Each part is written as its definition; waves as Newman, Marine Hydrodynamics (1977), sec. 6.2, has
+Each part is written as its definition; waves as Newman, Marine Hydrodynamics (1977), ch. 6, has
 them, with z down.
 """
 

@@ -1,6 +1,6 @@
 """Linear water waves: wave number and greatest height.
 
-Airy (1845), as in Newman, Marine Hydrodynamics (1977), sec. 6.2, and Faltinsen, Sea Loads on Ships
+Airy (1845), as in Newman, Marine Hydrodynamics (1977), ch. 6, and Faltinsen, Sea Loads on Ships
 and Offshore Structures (1990), ch. 2.
 """
 

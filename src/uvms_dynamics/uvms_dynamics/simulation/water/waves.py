@@ -5,7 +5,7 @@ surface, moves the water with
 
     u = a omega C cos psi,   w = -a omega S sin psi,   C, S = cosh, sinh k (h - z) / sinh k h
 
-(Newman 1977, sec. 6.2; w is down). Waves are summed as if each were alone in still water. The
+(Newman 1977, ch. 6; w is down). Waves are summed as if each were alone in still water. The
 material acceleration has the products with the gradients, with all velocities of the water in them:
 a body that is a part of the water then stays one.
 """
@@ -89,7 +89,7 @@ def wave_motion_at(waves, places, carried, times):
 def wave_head(waves, place, time):
     """Pressure by waves at a place (3,) in the world and a time, s, as metres of water.
 
-    Linear: a cosh k (h - z) / cosh k h cos psi (Newman 1977, sec. 6.2).
+    Linear: a cosh k (h - z) / cosh k h cos psi (Newman 1977, ch. 6).
     """
     head = 0.0
     for i in range(waves.shape[0]):
