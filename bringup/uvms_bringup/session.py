@@ -6,7 +6,6 @@ import subprocess
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from datetime import datetime, timezone
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -23,7 +22,7 @@ from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Claim, Holder
 from uvms_bringup.ending import Ending
 from uvms_bringup.errors import RunError
-from uvms_bringup.folder import claim_folder
+from uvms_bringup.folder import claim_folder, new_folder
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.run_id import new_run_id
@@ -231,7 +230,7 @@ def prepare(
     holder = Holder(new_run_id(), os.getpid(), command)
     if output == "":
         raise RunError("--output '': give the name of a folder")
-    folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
+    folder = Path(output) if output else new_folder(scenario.scenario)
     folder, claim = claim_folder(folder, holder)
     return Session(scenario, vehicle, goal, folder, pace, command, holder, claim, cast or Cast())
 
@@ -267,7 +266,3 @@ def git_revision() -> str:
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return found.stdout.strip()
-
-
-def _now() -> str:
-    return datetime.now(timezone.utc).strftime("%Y%m%dT%H%M%SZ")
