@@ -177,8 +177,12 @@ def _apply(data: dict[str, Any], setting: str) -> None:
         raise ScenarioError(f"--set {setting!r}: write PATH=VALUE, such as control.observer=false")
     value = parse_yaml(text, f"--set {_short(setting)!r}: {_short(text)!r}", ScenarioError)
     parents, last = _place(path)
-    for parent in parents:
-        data = data.setdefault(parent, {})
+    for number, parent in enumerate(parents):
+        section = Scenario.field_model(parent) if number == 0 else None
+        inner = data.setdefault(parent, {})
+        if section is not None and issubclass(section, PluginConfig):
+            inner = data[parent] = section.spelled_out(inner)
+        data = inner
         if not isinstance(data, dict):
             raise ScenarioError(f"--set {setting!r}: {parent!r} is a value, not a group of values")
     data[last] = value
