@@ -16,12 +16,17 @@ setup(
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
+        (f"share/{PACKAGE}/config/campaigns", sorted(glob("config/campaigns/*.yaml"))),
         (f"share/{PACKAGE}/config/scenarios", sorted(glob("config/scenarios/*.yaml"))),
         (f"share/{PACKAGE}/launch", sorted(glob("launch/*.*"))),
     ],
     install_requires=[
         "annotated-types>=0.5",
+        "dask>=2024.8",
+        "distributed>=2024.8",
+        "matplotlib>=3.8",
         "numpy>=1.26",
+        "pyarrow>=15",
         "pydantic>=2.5",
         "rich>=13",
         "uvms_analysis",
@@ -43,6 +48,7 @@ setup(
         ],
         "uvms.commands": [
             "added-mass = uvms_bringup.commands.added_mass:COMMAND",
+            "campaign = uvms_bringup.commands.campaign:COMMAND",
             "fields = uvms_bringup.commands.fields:COMMAND",
             "replay = uvms_bringup.commands.replay:COMMAND",
             "run = uvms_bringup.commands.run:COMMAND",

@@ -13,3 +13,7 @@ class ScenarioError(BringupError):
 
 class RunError(BringupError):
     """A run could not be started or did not complete."""
+
+
+class CampaignError(BringupError):
+    """A campaign is unknown, unreadable, names a value that is not allowed, or cannot be run."""

@@ -1,6 +1,7 @@
 """The output folder of a run: made, and claimed for this run alone."""
 
 import sys
+from datetime import datetime, timezone
 from pathlib import Path
 
 from uvms_bringup.claim import Claim, Holder, TakenError
@@ -8,6 +9,11 @@ from uvms_bringup.errors import RunError
 
 LOG_FILE = "run.mcap"
 CLAIM_FILE = ".run.lock"
+
+
+def new_folder(name: str) -> Path:
+    """Where the results of a run go that does not say where: below the working directory."""
+    return Path("runs") / f"{name}-{datetime.now(timezone.utc):%Y%m%dT%H%M%SZ}"
 
 
 def claim_folder(folder: Path, holder: Holder) -> tuple[Path, Claim]:

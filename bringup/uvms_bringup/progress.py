@@ -14,19 +14,22 @@ LINE_S = 5.0
 
 
 class ProgressLine:
-    """A bar on a terminal, a line every few seconds elsewhere."""
+    """A bar on a terminal, a line every few seconds elsewhere; nothing where it is quiet."""
 
-    def __init__(self, end: int) -> None:
+    def __init__(self, end: int, quiet: bool = False) -> None:
         self._end = end
+        self._quiet = quiet
         self._shown = 0.0
         self._began: tuple[float, int] | None = None
-        self._bar = _bar() if sys.stderr.isatty() else None
+        self._bar = _bar() if sys.stderr.isatty() and not quiet else None
         if self._bar is not None:
             self._bar.start()
             self._task = self._bar.add_task("run", total=to_seconds(end), speed="", note="")
 
     def show(self, stamp: int, note: str) -> None:
         """Show how far the run is; cheap when called often."""
+        if self._quiet:
+            return
         now = time.monotonic()
         if self._began is None and stamp > 0:
             self._began = now, stamp

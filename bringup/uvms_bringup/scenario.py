@@ -1,7 +1,7 @@
 """A scenario: everything that a run depends on, read from a YAML file that a user can copy."""
 
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -113,8 +113,15 @@ class Scenario(Config):
         return self.model_copy(update={"plant": self.plant.model_copy(update=start), "goal": goal})
 
 
-def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Scenario:
+def load_scenario(
+    name: str,
+    settings: Sequence[str] = (),
+    values: Mapping[str, Any] | None = None,
+    **changes: Any,
+) -> Scenario:
     """The scenario of that name or file, with `PATH=VALUE` settings and top-level changes applied.
+
+    `values` are settings by path that are no texts, applied after the others.
 
     Paths in the file are relative to the file, those in settings and changes to the working
     directory; both become absolute.
@@ -129,6 +136,8 @@ def load_scenario(name: str, settings: Sequence[str] = (), **changes: Any) -> Sc
     data.update({key: value for key, value in changes.items() if value is not None})
     for setting in settings:
         _apply(data, setting)
+    for place, value in (values or {}).items():
+        _put(data, place, value, place)
     _make_absolute(data, Path())
     return validated(Scenario, data, f"scenario {path.name}", ScenarioError)
 
@@ -176,6 +185,10 @@ def _apply(data: dict[str, Any], setting: str) -> None:
     if not separator or not path:
         raise ScenarioError(f"--set {setting!r}: write PATH=VALUE, such as control.observer=false")
     value = parse_yaml(text, f"--set {_short(setting)!r}: {_short(text)!r}", ScenarioError)
+    _put(data, path, value, f"--set {setting!r}")
+
+
+def _put(data: dict[str, Any], path: str, value: Any, what: str) -> None:
     parents, last = _place(path)
     for number, parent in enumerate(parents):
         section = Scenario.field_model(parent) if number == 0 else None
@@ -184,7 +197,7 @@ def _apply(data: dict[str, Any], setting: str) -> None:
             inner = data[parent] = section.spelled_out(inner)
         data = inner
         if not isinstance(data, dict):
-            raise ScenarioError(f"--set {setting!r}: {parent!r} is a value, not a group of values")
+            raise ScenarioError(f"{what}: {parent!r} is a value, not a group of values")
     data[last] = value
 
 

@@ -6,7 +6,7 @@ import subprocess
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
-from datetime import datetime, timezone
+from functools import cache
 from importlib.metadata import version
 from pathlib import Path
 from typing import Any
@@ -14,13 +14,15 @@ from typing import Any
 from uvms_analysis.log import run_end
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
+from uvms_analysis.log.memory import MemoryWriter
+from uvms_analysis.log.read import RUN
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.summary import summarise
 from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Claim, Holder
 from uvms_bringup.ending import Ending
 from uvms_bringup.errors import RunError
-from uvms_bringup.folder import claim_folder
+from uvms_bringup.folder import claim_folder, new_folder
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.run_id import new_run_id
@@ -82,6 +84,7 @@ class Session:
     holder: Holder
     claim: Claim
     cast: Cast = field(default_factory=Cast)
+    quiet: bool = False
 
     def run_simulation(self) -> dict[str, Any]:
         """`uvms simulate`: returns the summary; as `run_graph`."""
@@ -89,11 +92,7 @@ class Session:
         def run(log: LogWriter, ending: Ending, progress: Progress) -> None:
             names = self.vehicle.joint_names, self.vehicle.thruster_names
             writer = SignalWriter(log, *names, self.cast.namespace)
-            began = self.goal is not None
-            ending.goal = "running" if began else "none"
-            succeeded = simulate(self.scenario, self.vehicle, self.goal, writer, progress)
-            if began:
-                ending.goal = "succeeded" if succeeded else "aborted"
+            simulate_goal(self.scenario, self.vehicle, self.goal, writer, ending, progress)
             ending.sent = log.counts  # what is computed here is written here
 
         return self._record(run)
@@ -129,7 +128,7 @@ class Session:
         config = effective_config(self.scenario)
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
-        line = ProgressLine(to_nanoseconds(self.scenario.duration_s))
+        line = ProgressLine(to_nanoseconds(self.scenario.duration_s), self.quiet)
         clock, ending, fault = Stopwatch(), Ending(), None
         try:
             with SignalWatch() as signals, LogWriter(self.folder / "run.mcap") as log:
@@ -177,18 +176,7 @@ class Session:
         log.attach(VEHICLE_FILE, dump_vehicle(self.vehicle), "application/yaml")
         if isinstance(self.goal, PathGoal):
             log.attach("path.json", path_to_json(self.goal), "application/json")
-        log.metadata(
-            "uvms",
-            {
-                "scenario": self.scenario.scenario,
-                "seed": self.scenario.seed,
-                "git_revision": git_revision(),
-                "version": version("uvms_bringup"),
-                "pace": self.pace,
-                "command": self.command,
-                "run_id": self.holder.run_id,
-            },
-        )
+        log.metadata(RUN, run_record(self.scenario, self.pace, self.command, self.holder.run_id))
 
     def _summarise(self, clock: Stopwatch) -> dict[str, Any]:
         summary: dict[str, Any] = {"run_id": self.holder.run_id}
@@ -197,6 +185,35 @@ class Session:
         text = json.dumps(summary, indent=2)
         (self.folder / SUMMARY_FILE).write_text(text + "\n", encoding="utf-8")
         return summary
+
+
+def simulate_goal(
+    scenario: Scenario,
+    vehicle: Vehicle,
+    goal: Goal,
+    log: SignalWriter | MemoryWriter,
+    ending: Ending,
+    progress: Progress = lambda stamp, text: None,
+) -> None:
+    """`simulate`, noting what became of the goal."""
+    began = goal is not None
+    ending.goal = "running" if began else "none"
+    succeeded = simulate(scenario, vehicle, goal, log, progress)
+    if began:
+        ending.goal = "succeeded" if succeeded else "aborted"
+
+
+def run_record(scenario: Scenario, pace: str, command: str, run_id: str) -> dict[str, Any]:
+    """What a log says about its run."""
+    return {
+        "scenario": scenario.scenario,
+        "seed": scenario.seed,
+        "git_revision": git_revision(),
+        "version": version("uvms_bringup"),
+        "pace": pace,
+        "command": command,
+        "run_id": run_id,
+    }
 
 
 def prepare(
@@ -213,18 +230,23 @@ def prepare(
     holder = Holder(new_run_id(), os.getpid(), command)
     if output == "":
         raise RunError("--output '': give the name of a folder")
-    folder = Path(output) if output else Path("runs") / f"{scenario.scenario}-{_now()}"
+    folder = Path(output) if output else new_folder(scenario.scenario)
     folder, claim = claim_folder(folder, holder)
     return Session(scenario, vehicle, goal, folder, pace, command, holder, claim, cast or Cast())
 
 
 def effective_config(scenario: Scenario) -> str:
     """The scenario as YAML that runs again with the `vehicle.yaml` beside it, wherever they are."""
-    own = scenario.model_copy(update={"vehicle": VEHICLE_FILE, "vehicle_overrides": {}})
     changes = (f"{path}={value}" for path, value in scenario.vehicle_overrides.items())
     origin = " with ".join(filter(None, (scenario.vehicle, ", ".join(changes))))
     origin = " ".join(origin.split())  # a comment is one line
-    return f"# {VEHICLE_FILE}: {origin}\n{dump_yaml(own.model_dump(mode='json'))}"
+    return f"# {VEHICLE_FILE}: {origin}\n{dump_yaml(effective_values(scenario))}"
+
+
+def effective_values(scenario: Scenario) -> dict[str, Any]:
+    """The scenario as plain data; its vehicle is that of the file beside it."""
+    own = scenario.model_copy(update={"vehicle": VEHICLE_FILE, "vehicle_overrides": {}})
+    return own.model_dump(mode="json")
 
 
 def vehicle_file(folder: Path, vehicle: Vehicle) -> Path:
@@ -234,6 +256,7 @@ def vehicle_file(folder: Path, vehicle: Vehicle) -> Path:
     return path
 
 
+@cache
 def git_revision() -> str:
     """Revision of the sources in use, `unknown` outside a repository; `+` marks local changes."""
     here = Path(__file__).resolve().parent
@@ -243,7 +266,3 @@ def git_revision() -> str:
     except (OSError, subprocess.CalledProcessError):
         return "unknown"
     return found.stdout.strip()
-
-
-def _now() -> str:
-    return datetime.now(timezone.utc).strftime("%Y%m%dT%H%M%SZ")

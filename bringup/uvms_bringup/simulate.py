@@ -3,6 +3,7 @@
 from collections.abc import Callable
 
 from uvms_analysis.log.encode import SignalWriter
+from uvms_analysis.log.memory import MemoryWriter
 from uvms_bringup.loop import Loop, LoopTick
 from uvms_bringup.scenario import Scenario
 from uvms_core import diagnostics, topics
@@ -18,7 +19,7 @@ def simulate(
     scenario: Scenario,
     vehicle: Vehicle,
     goal: PathGoal | JointGoal | None,
-    log: SignalWriter | None = None,
+    log: SignalWriter | MemoryWriter | None = None,
     progress: Progress = lambda stamp, text: None,
     observe: Callable[[LoopTick], None] = lambda tick: None,
 ) -> bool:
@@ -61,17 +62,18 @@ def simulate(
                 log.write(topics.DIAGNOSTICS, status)
 
 
-def write_description(log: SignalWriter, vehicle: Vehicle) -> None:
+def write_description(log: SignalWriter | MemoryWriter, vehicle: Vehicle) -> None:
     """What the graph publishes once, before the first tick."""
     log.write_plain(topics.ROBOT_DESCRIPTION, description_message(vehicle), 0)
     log.write_plain(topics.TF_STATIC, static_message(vehicle), 0)
 
 
-def write_tick(log: SignalWriter, tick: LoopTick, frames: StateFrames) -> None:
+def write_tick(log: SignalWriter | MemoryWriter, tick: LoopTick, frames: StateFrames) -> None:
     """Every message that the graph publishes in this tick."""
     for topic, signal in tick.outputs:
         log.write(topic, signal)
-    log.write_plain(topics.TF, frames.message(tick.odometry, tick.sensors.joints), tick.stamp)
+    joints = tick.sensors.joints
+    log.write_made(topics.TF, tick.stamp, frames.message, tick.odometry, joints)
     if tick.plan is not None:
         values = {"step_ms": tick.step_ms[topics.MOTION_PLANNER]} | tick.plan.diagnostics()
         log.write(

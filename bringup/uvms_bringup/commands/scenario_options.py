@@ -11,14 +11,24 @@ if TYPE_CHECKING:
     from uvms_bringup.session import Session
 
 
-def add_scenario_options(parser: ArgumentParser, note: str = "") -> None:
-    """The scenario and how it is run; `note` follows the help of the graph's own options."""
+def add_scenario_options(parser: ArgumentParser, note: str = "", optional: bool = False) -> None:
+    """The scenario and how it is run.
+
+    Args:
+        note: follows the help of the graph's own options.
+        optional: whether another option may stand in the place of the scenario.
+    """
     from uvms_bringup.locate import known_scenarios
     from uvms_core import topics
 
     add = parser.add_argument
     scenarios = ", ".join(known_scenarios())
-    add("scenario", metavar="SCENARIO", help=f"{scenarios}, or a YAML file of your own")
+    add(
+        "scenario",
+        metavar="SCENARIO",
+        nargs="?" if optional else None,
+        help=f"{scenarios}, or a YAML file of your own",
+    )
     add("--seed", type=int, metavar="N", help="seed of all random numbers (default: scenario's)")
     add("--duration", type=float, metavar="S", help="simulated seconds (default: scenario's)")
     add(
@@ -72,7 +82,6 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
     from uvms_bringup.cast import Cast
     from uvms_bringup.scenario import load_scenario
     from uvms_bringup.session import prepare
-    from uvms_core.vehicle import vehicle_warnings
 
     scenario = load_scenario(
         options.scenario,
@@ -83,15 +92,23 @@ def open_session(options: Namespace, pace: "Pace") -> "Session":
     )
     cast = Cast.parse(options.node, options.without, options.namespace)
     session = prepare(scenario, options.output, str(pace), options.command_line, cast)
+    introduce(session, options.json)
+    return session
+
+
+def introduce(session: "Session", as_json: bool) -> None:
+    """Print what will be run, and where to."""
+    from uvms_core.vehicle import vehicle_warnings
+
+    scenario = session.scenario
     for line in vehicle_warnings(session.vehicle):
         print(f"warning: vehicle: {line}", file=sys.stderr)
     print(
         f"{scenario.scenario}: {scenario.description}\nrun {session.holder.run_id} to"
         f" {session.folder}",
-        file=sys.stderr if options.json else None,
+        file=sys.stderr if as_json else None,
         flush=True,
     )
-    return session
 
 
 def conclude(session: "Session", run: Callable[[], dict[str, Any]], as_json: bool) -> int:

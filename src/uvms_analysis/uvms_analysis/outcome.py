@@ -60,16 +60,18 @@ def judged_by(log: RunLog) -> str:
     return TRUTH if log.counts.get(log.full_name(topics.TRUE_ODOMETRY)) else ESTIMATES
 
 
-def judge(log: RunLog, check: Check | None = None) -> Outcome:
+def judge(log: RunLog, check: Check | None = None, truth: Analysis | None = None) -> Outcome:
     """The outcome of the run in a log: the worst that was found, and all reasons, worst first.
 
     Args:
         check: of this log, where it has been made already.
+        truth: analysis of this log by its true odometry, where there is one already.
     """
     check = check or check_log(log)
     if not log.run and _end(log) is None:
         return Outcome(INVALID, (NO_RUN, *map(_reason, check.faults)))
-    run = Analysis(log, estimated=judged_by(log) == ESTIMATES)
+    estimated = judged_by(log) == ESTIMATES
+    run = Analysis(log, estimated) if estimated or truth is None else truth
     broken, unknown = _limits(run)
     unsafe, inputs = _counted(log)
     aborted = _aborted(log)

@@ -63,8 +63,8 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
     log = log if isinstance(log, RunLog) else RunLog.open(log)
     log.load([topic for topic in LOADED if log.has(topic)])
     check = check_log(log)
-    outcome = judge(log, check)
     run, figures = Analysis(log), Figures(log)
+    outcome = judge(log, check, run)
     duration = figures.of("sim_duration_s", lambda: _span(run))
     end = figures.of("end", lambda: _end(log))
     summary = {

@@ -51,6 +51,8 @@ class Contents:
         self._readers = {
             name: reader for name in self.topics if (reader := self._reader(name)) is not None
         }
+        for name, stamps in log.known_stamps.items():
+            self.topics[name].stamps.extend(stamps)
         for name, entry in log.entries():
             self._take(name, self.topics[name], entry.stamp, entry.data)
         for name, topic in self._decoded.items():
@@ -109,8 +111,9 @@ class Contents:
             return None
 
     def _take(self, name: str, found: Topics, stamp: int, data: bytes) -> None:
-        found.stamps.append(min(stamp, 2**63 - 1))
-        found.checksums.append(zlib.crc32(data))
+        if name not in self.log.known_stamps:
+            found.stamps.append(min(stamp, 2**63 - 1))
+            found.checksums.append(zlib.crc32(data))
         if name not in self._readers or (found.names is not None and name in self._decoded):
             return  # of what is decoded already, the first message alone, for its names
         topic, decode = self._readers[name]
@@ -133,8 +136,8 @@ class Contents:
         found.rejected = list(self.log.rejected.get(topic.name, ()))
         if topic in NOT_STAMPED or found.rejected:
             return
-        own = [one if isinstance(one, int) else one.stamp for one in self.log.signals(topic)]
-        found.moved = int(np.sum(np.array(own, dtype=np.int64) != found.times))
+        own = np.array(self.log.own_stamps(topic), dtype=np.int64)
+        found.moved = int(np.sum(own != found.times))
 
 
 def _names(message: Any) -> tuple[str, ...]:

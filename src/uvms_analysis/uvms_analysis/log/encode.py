@@ -1,6 +1,6 @@
 """Write signals to a log without ROS, as the graph would publish them."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 from uvms_analysis.log.schema import qos_yaml
@@ -40,6 +40,10 @@ class SignalWriter:
             channel = topic.resolve(self._namespace), qos_yaml(topic.qos), codec(topic.type)
             self._channels[topic.name] = channel
         self._log.write(channel[0], topic.type, channel[1], stamp, channel[2].encode(message))
+
+    def write_made(self, topic: Topic, stamp: int, make: Callable[..., Any], *values: Any) -> None:
+        """The message that `make` makes of the values: no other writer need make it."""
+        self.write_plain(topic, make(*values), stamp)
 
     def _names(self, signal: Any) -> tuple[str, ...]:
         thrusters = isinstance(signal, ThrusterCommand | Allocation | AppliedThrust)

@@ -1,5 +1,6 @@
 """Reads a log topic by topic, as signals or as numpy arrays over time."""
 
+from array import array
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import fields, is_dataclass
 from pathlib import Path
@@ -82,6 +83,9 @@ class RunLog:
             self._numbers.setdefault(channel.topic, []).append(number)
         self._signals: dict[str, list[Any]] = {}
         self._read: dict[str, Any] = {}
+        self.known_stamps: dict[str, array] = {}
+        """Log times by full topic name where they are known beforehand: of these topics `entries`
+        need not have every message."""
         self.namespace = self._find_namespace()
 
     @classmethod
@@ -263,6 +267,10 @@ class RunLog:
     def is_loaded(self, topic: Topic) -> bool:
         """Whether the topic's signals are decoded already."""
         return topic.name in self._signals
+
+    def own_stamps(self, topic: Topic) -> Sequence[int]:
+        """The stamps that the signals of a topic carry, ns."""
+        return [one if isinstance(one, int) else one.stamp for one in self.signals(topic)]
 
     def series(self, topic: Topic) -> Series:
         """A topic over time, each field of its signal in one array.

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from uvms_analysis.errors import LogError
+from uvms_analysis.flat import flatten
 from uvms_analysis.log.read import RunLog
 
 CSS = Path(__file__).with_name("page.css")
@@ -43,17 +44,6 @@ def write_page(path: Path, log: RunLog, summary: dict[str, Any], pictures: list[
     except OSError as fault:
         raise LogError(f"{path}: cannot be written: {fault.strerror}") from fault
     return path
-
-
-def flatten(values: dict[str, Any], prefix: str = "") -> dict[str, Any]:
-    """Nested values with dotted names."""
-    flat: dict[str, Any] = {}
-    for key, value in values.items():
-        if isinstance(value, dict):
-            flat |= flatten(value, f"{prefix}{key}.")
-        else:
-            flat[prefix + key] = value
-    return flat
 
 
 def _document(title: str, body: str) -> str:

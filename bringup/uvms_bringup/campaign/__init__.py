@@ -1,0 +1,1 @@
+"""Campaigns: many runs of varied scenarios, judged by requirements; one idea a file."""

@@ -1,0 +1,80 @@
+"""The results of a campaign in its folder: table, statistics and page."""
+
+import json
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from uvms_bringup.campaign.file import Campaign
+from uvms_bringup.campaign.plan import Variant
+from uvms_bringup.campaign.row import Row
+from uvms_bringup.campaign.statistics import statistics, wilson
+from uvms_bringup.campaign.table import TABLE_FILE, write_table
+
+SUMMARY_FILE = "summary.json"
+PAGE_FILE = "index.html"
+
+
+@dataclass(frozen=True)
+class Results:
+    """The rows of a campaign, complete or not.
+
+    Args:
+        variants: all that the campaign has, in its order.
+        computed: rows by case and seed, in any order.
+    """
+
+    campaign: Campaign
+    variants: Sequence[Variant]
+    folder: Path
+    computed: Mapping[tuple[str, int], Row]
+
+    @property
+    def rows(self) -> list[Row]:
+        """The rows in the order of the campaign, whatever the order in which they ended."""
+        keys = ((one.case, seed) for one in self.variants for seed in one.seeds)
+        return [self.computed[key] for key in keys if key in self.computed]
+
+    @property
+    def judged(self) -> list[Row]:
+        """The rows that count: those of the cases, not of baselines."""
+        return [row for row in self.rows if not row["beside"]]
+
+    @property
+    def passed(self) -> int:
+        """Rows that count and kept all that is required."""
+        return sum(row["passed"] for row in self.judged)
+
+    def summary(self) -> dict[str, Any]:
+        """The content of `summary.json`."""
+        planned = sum(len(one.seeds) for one in self.variants if not one.beside)
+        started = {row["case"] for row in self.rows}
+        shown = [one for one in self.variants if started & {one.case, one.beside}]
+        return {
+            "campaign": self.campaign.campaign,
+            "description": self.campaign.description,
+            "planned": planned,
+            "runs": len(self.judged),
+            "passed": self.passed,
+            "wilson_95": list(wilson(self.passed, len(self.judged))),
+            "cases": statistics(_with_their_cases(self.variants, shown), self.rows),
+        }
+
+    def write(self) -> None:
+        """Write table, statistics and page; nothing where there is no row yet."""
+        if not self.rows:
+            return
+        from uvms_bringup.campaign.page import write_page  # draws, which takes a while to import
+
+        summary = self.summary()
+        write_table(self.folder / TABLE_FILE, self.rows)
+        text = json.dumps(summary, indent=2)
+        (self.folder / SUMMARY_FILE).write_text(f"{text}\n", encoding="utf-8")
+        write_page(self.folder / PAGE_FILE, summary, self.rows)
+
+
+def _with_their_cases(everything: Sequence[Variant], shown: Sequence[Variant]) -> list[Variant]:
+    """Those to show, and the case of each baseline even where only the baseline has rows yet."""
+    names = {one.case for one in shown} | {one.beside for one in shown}
+    return [one for one in everything if one.case in names]

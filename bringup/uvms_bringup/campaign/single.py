@@ -1,0 +1,39 @@
+"""One run in memory: its summary without a log file."""
+
+from typing import Any
+
+from uvms_analysis.log.memory import MemoryWriter
+from uvms_analysis.summary import LOADED, summarise
+from uvms_bringup.ending import Ending
+from uvms_bringup.pace import Pace
+from uvms_bringup.scenario import Scenario
+from uvms_bringup.session import Stopwatch, effective_values, run_record, simulate_goal
+from uvms_core.errors import UvmsError
+from uvms_planner.errors import GoalRejected
+
+
+def summary_of(scenario: Scenario) -> dict[str, Any]:
+    """The summary of a run, the same as `uvms simulate` makes from its log.
+
+    Raises:
+        UvmsError: the run cannot begin; one that ends early has a summary that says so.
+    """
+    vehicle = scenario.load_vehicle()
+    scenario = scenario.for_vehicle(vehicle)
+    goal = scenario.goal.build(vehicle, scenario.plant)
+    writer, ending, clock = MemoryWriter(vehicle, LOADED), Ending(), Stopwatch()
+    stopped_by = ""
+    try:
+        simulate_goal(scenario, vehicle, goal, writer, ending, lambda stamp, text: clock.start())
+    except UvmsError as fault:
+        clock.stop()
+        if clock.run_s == 0.0 or isinstance(fault, GoalRejected):
+            raise
+        stopped_by = str(fault)
+    clock.stop()
+    if not stopped_by:
+        ending.sent = writer.counts
+    about = run_record(scenario, str(Pace()), "", "")
+    end = ending.record(scenario.duration_s, stopped_by)
+    log = writer.log(about, effective_values(scenario), goal, end)
+    return summarise(log, wall_s=clock.run_s)
