@@ -16,6 +16,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from uvms_bringup.scenario import Scenario
+from uvms_core.plugin import PluginConfig
 from uvms_core.vehicle import Vehicle
 from uvms_core.yaml_text import dump_yaml
 
@@ -137,7 +138,7 @@ def _type(annotation: Any) -> str:
     if annotation in PLAIN:
         return PLAIN[annotation]
     if isinstance(annotation, type) and issubclass(annotation, BaseModel):
-        return "section"
+        return _section_type(annotation)
     origin, arguments = get_origin(annotation), get_args(annotation)
     if origin is Annotated:
         return _type(arguments[0])
@@ -150,6 +151,14 @@ def _type(annotation: Any) -> str:
     if origin is tuple:
         return _list_type(arguments)
     return str(getattr(annotation, "__name__", annotation))
+
+
+def _section_type(model: type[BaseModel]) -> str:
+    """A section, and what a single word in its place names."""
+    if not issubclass(model, PluginConfig):
+        return "section"
+    words = "".join(f", or `{word}`" for word in model.words)
+    return f"section, or a word: its `{model.slot.field}`{words}"
 
 
 def _list_type(items: tuple[Any, ...]) -> str:

@@ -97,7 +97,7 @@ class Goal(Config):
     def for_vehicle(self, vehicle: Vehicle, plant: PlantConfig) -> "Goal":
         """The same goal in numbers for this vehicle: no posture names, and the path scaled."""
         if self.path is not None:
-            return Goal(path=scaled(self.path, self._scale(vehicle)))
+            return Goal(path=self.path.scaled(self._scale(vehicle)))
         if self.joints is not None:
             points = self.joints.angles_deg(vehicle, initial_joints_deg(vehicle, plant))
             return Goal(joints=self.joints.model_copy(update={"positions_deg": tuple(points)}))
@@ -115,20 +115,6 @@ class Goal(Config):
         if self.path is not None:
             return self.path.duration_s
         return self.joints.times_s[-1] if self.joints is not None else 0.0
-
-
-def scaled(path: PathSpec, factor: float) -> PathSpec:
-    """The path with all its lengths times a factor, and the same times."""
-    phases = tuple(
-        phase.model_copy(
-            update={
-                "to_m": tuple(factor * x for x in phase.to_m),
-                "bulge_m": tuple(factor * x for x in phase.bulge_m),
-            }
-        )
-        for phase in path.phases
-    )
-    return path.model_copy(update={"phases": phases})
 
 
 def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, Array]:

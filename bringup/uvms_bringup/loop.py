@@ -29,7 +29,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import Plant, PlantTruth, SensorFrame
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
-from uvms_observer.parts import NavigationPart, ObserverPart
+from uvms_observer.parts import ObserverPart, navigation_part
 from uvms_planner import MotionPlanner, PlannerStep
 from uvms_planner.part import PlannerPart
 
@@ -102,7 +102,7 @@ def make_parts(scenario: Scenario, vehicle: Vehicle) -> dict[str, Part]:
     """The parts of a scenario's loop besides the plant, by role."""
     period = to_nanoseconds(scenario.plant.control_period_s)
     return {
-        topics.NAVIGATION: NavigationPart(vehicle, scenario.navigation, period),
+        topics.NAVIGATION: navigation_part(vehicle, scenario.navigation, period),
         topics.MOTION_PLANNER: PlannerPart(vehicle, scenario.planner, scenario.seed),
         topics.DISTURBANCE_OBSERVER: ObserverPart(vehicle, scenario.observer, period),
         topics.CONTROLLER: ControllerPart(vehicle, scenario.control),

@@ -163,11 +163,21 @@ def _read_scenario(path: Path) -> dict[str, Any]:
 
 
 def _make_absolute(data: dict[str, Any], folder: Path) -> None:
-    """Let every relative path to a vehicle file start at `folder`."""
-    for group, name in ((data, "vehicle"), (data.get("goal"), "path_made_for")):
-        value = group.get(name) if isinstance(group, dict) else None
-        if isinstance(group, dict) and isinstance(value, str) and value.endswith(FILE_SUFFIXES):
+    """Let every relative path to a vehicle file or a table start at `folder`."""
+    goal = _group(data, "goal")
+    path = _group(goal, "path")
+    vehicles = ((data, "vehicle"), (goal, "path_made_for"))
+    for group, name in (*vehicles, (path, "csv"), (_group(path, "csv"), "file")):
+        value = group.get(name)
+        is_table = group is not data and group is not goal
+        if isinstance(value, str) and (is_table or value.endswith(FILE_SUFFIXES)):
             group[name] = str((folder / value).resolve())
+
+
+def _group(data: dict[str, Any], name: str) -> dict[str, Any]:
+    """The group of values of that name; an empty one where there is none."""
+    inner = data.get(name)
+    return inner if isinstance(inner, dict) else {}
 
 
 def _apply(data: dict[str, Any], setting: str) -> None:
@@ -180,8 +190,12 @@ def _apply(data: dict[str, Any], setting: str) -> None:
 
 def _put(data: dict[str, Any], path: str, value: Any, what: str) -> None:
     parents, last = _place(path)
-    for parent in parents:
-        data = data.setdefault(parent, {})
+    for number, parent in enumerate(parents):
+        section = Scenario.field_model(parent) if number == 0 else None
+        inner = data.setdefault(parent, {})
+        if section is not None and issubclass(section, PluginConfig):
+            inner = data[parent] = section.spelled_out(inner)
+        data = inner
         if not isinstance(data, dict):
             raise ScenarioError(f"{what}: {parent!r} is a value, not a group of values")
     data[last] = value

@@ -33,7 +33,10 @@ setup(
             "navigation = uvms_observer.nodes.navigation:NavigationNode",
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
         ],
-        "uvms.observers": ["momentum_residual = uvms_observer.disturbance:DisturbanceObserver"],
+        "uvms.observers": [
+            "momentum_residual = uvms_observer.disturbance:DisturbanceObserver",
+            "none = uvms_observer.disturbance.none:NoObserver",
+        ],
         "uvms.navigation_filters": ["error_state_ekf = uvms_observer.navigation:NavigationFilter"],
         "uvms.measurements": [
             "imu = uvms_observer.navigation.measurements.imu:Gyrocompass",

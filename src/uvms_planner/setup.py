@@ -35,6 +35,7 @@ setup(
             "genetic = uvms_planner.methods.genetic:Genetic",
             "least_norm = uvms_planner.methods.least_norm:LeastNorm",
             "arm_only = uvms_planner.methods.arm_only:ArmOnly",
+            "vehicle_only = uvms_planner.methods.vehicle_only:VehicleOnly",
         ],
         "uvms.kernels": ["uvms_planner = uvms_planner"],
     },

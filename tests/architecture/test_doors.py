@@ -18,7 +18,8 @@ PARTS = (
     registry.ALLOCATORS,
 )
 SECTIONS = (NavigationConfig, ObserverConfig, PlannerConfig, ControlConfig, AllocatorConfig)
-NAMES = {name for door in PARTS for name in registry.names(door)}
+NAMES = {name for door in PARTS for name in registry.names(door)} - {"none"}
+"""`none`, the observer, is a word with other meanings as well, such as a run without a goal."""
 
 
 def compared(tree):

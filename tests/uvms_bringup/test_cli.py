@@ -57,7 +57,9 @@ PERIOD = "is not a multiple of"
         (["--vehicle", "none.yaml"], "{cwd}/none.yaml: cannot be read: No such file or directory"),
         (
             ["--vehicle", "foo"],
-            "unknown vehicle 'foo'; choose one of bluerov2_alpha5, reference_auv, or a YAML file",
+            "unknown vehicle 'foo'; choose one of bluerov2_alpha5, reference_auv,"
+            " reference_auv_heavy, reference_auv_light, reference_auv_three_thrusters,"
+            " or a YAML file",
         ),
         (
             ["--pace", "realtime:0"],

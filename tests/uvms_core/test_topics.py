@@ -26,6 +26,7 @@ def test_relative_names_fall_under_the_namespace(topic, namespace, name):
 
 
 def test_no_node_of_the_loop_reads_the_truth():
+    """Of itself; `navigation.source: truth` adds it to what navigation reads, as a baseline."""
     for name, node in topics.NODES.items():
         assert not [t for t in node.inputs if t.name.startswith("ground_truth")], name
 

@@ -2,6 +2,7 @@
 
 import os
 import time
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -54,7 +55,7 @@ class NodeReplay:
         self._vehicle = Analysis(run).vehicle
         period = to_nanoseconds(self.scenario.plant.control_period_s)
         tick_of = TickOf(run, period, to_nanoseconds(self.scenario.planner.step_s))
-        self.topics = topics.nodes(self._vehicle)[node]
+        self.topics = self._topics_of(node)
         self.ticks = schedule(run, node, tick_of, self.topics)
         values = environment(folder / "logs")
         command = f"uvms replay {run.path} --into {node}"
@@ -66,6 +67,13 @@ class NodeReplay:
         self._spinner = Spinner([self._player])
         self._processes.start(node, self._command(folder))
         self._processes.release()
+
+    def _topics_of(self, node: str) -> topics.NodeTopics:
+        """What the node reads and writes in the recorded run."""
+        own = topics.nodes(self._vehicle)[node]
+        if node == topics.NAVIGATION and self.scenario.navigation.source == "truth":
+            return replace(own, inputs=(*own.inputs, topics.TRUE_ODOMETRY))
+        return own
 
     def _command(self, folder: Path) -> list[str]:
         vehicle = folder / "vehicle.yaml"

@@ -1,6 +1,7 @@
 """Parameters of the controller and of the thrust allocator, each with unit, bounds and meaning."""
 
-from typing import Annotated, ClassVar
+from collections.abc import Mapping
+from typing import Annotated, Any, ClassVar
 
 from pydantic import Field
 
@@ -107,6 +108,7 @@ class ControlConfig(PluginConfig):
     """Vehicle and arm controller."""
 
     slot: ClassVar[Slot] = Slot(registry.CONTROLLERS, "law", ControlLaw)
+    words: ClassVar[Mapping[str, Mapping[str, Any]]] = {"off": {"enabled": False}}
 
     law: str = Field(
         default="s_surface",

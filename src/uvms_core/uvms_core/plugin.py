@@ -8,13 +8,13 @@ made, so that a mistake in a plug-in is one clear line and not a traceback in th
 
 import inspect
 import traceback
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from copy import deepcopy
 from dataclasses import dataclass
 from functools import wraps
 from typing import Any, ClassVar, TypeVar
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 
 from uvms_core import registry
 from uvms_core.config import Config, validated
@@ -42,14 +42,35 @@ class Slot:
 
 
 class PluginConfig(Config):
-    """Base of a section whose part may be replaced."""
+    """Base of a section whose part may be replaced.
+
+    A section that is one word only names its part: `observer: none` is `observer: {law: none}`.
+    """
 
     slot: ClassVar[Slot]
+    words: ClassVar[Mapping[str, Mapping[str, Any]]] = {}
+    """What further words stand for, such as `off`."""
 
     parameters: Any = Field(
         default_factory=dict,
         description="what only the chosen part knows, by name (its class lists them as Parameters)",
     )
+
+    @model_validator(mode="before")
+    @classmethod
+    def _may_be_a_word(cls, section: Any) -> Any:
+        return cls.spelled_out(section)
+
+    @classmethod
+    def spelled_out(cls, section: Any) -> Any:
+        """The fields that a section of one word stands for; any other section as it is.
+
+        `off` and `on` are true and false to YAML 1.1, so that false is taken for `off`.
+        """
+        word = "off" if section is False and "off" in cls.words else section
+        if not isinstance(word, str):
+            return section
+        return dict(cls.words.get(word, {cls.slot.field: word}))
 
     @field_validator("*")
     @classmethod

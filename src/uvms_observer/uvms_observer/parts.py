@@ -8,15 +8,16 @@ from uvms_core import topics
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
-from uvms_core.sensors import INERTIAL, sensor_types
-from uvms_core.signals import DisturbanceBudget, Odometry, Wrench, to_nanoseconds
-from uvms_core.tick_gate import KEEP, Periodic, Previous, Same, Tick
+from uvms_core.sensors import INERTIAL
+from uvms_core.signals import DisturbanceBudget, Odometry, Wrench
+from uvms_core.tick_gate import KEEP, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.sensors import Sensor
+from uvms_observer.arrivals import sensor_inputs, used_sensors
 from uvms_observer.disturbance import ObserverConfig
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig
 from uvms_observer.navigation.resume import carried, fits, is_in_the_middle, lost
+from uvms_observer.truth import TruthPart
 
 CERTAIN = 10.0
 """The position is known again within this many std of a GPS fix, and as many metres."""
@@ -40,12 +41,8 @@ class NavigationPart(Part):
         self._vehicle, self._config = vehicle, config
         self.filter: NavigationEstimator = create(config, vehicle)
         self.every = period
-        used = [sensor for sensor in sensor_types(vehicle) if sensor.navigation]
-        sections = vehicle.sensors.mounted
-        self._sensors = {sensor.name: sensor.topic.name for sensor in used}
-        self.inputs = {
-            sensor.topic: Periodic(sample_period(sections[sensor.name])) for sensor in used
-        }
+        self._sensors = {sensor.name: sensor.topic.name for sensor in used_sensors(vehicle)}
+        self.inputs = sensor_inputs(vehicle)
         self._faults: Sequence[UvmsError] = ()
         self._begun = False
         self._known = True
@@ -126,9 +123,13 @@ _STATUS = {"refused": "samples_refused", "late": "samples_late"}
 """What the filter counts, apart from what its node does."""
 
 
-def sample_period(sensor: Sensor) -> int:
-    """Nanoseconds between two samples of a sensor."""
-    return to_nanoseconds(1.0 / sensor.rate_hz)
+def navigation_part(
+    vehicle: Vehicle, config: NavigationConfig, period: int
+) -> NavigationPart | TruthPart:
+    """The navigation of a scenario: a filter on the sensors, or the truth as a baseline."""
+    if config.source == "truth":
+        return TruthPart(vehicle, period)
+    return NavigationPart(vehicle, config, period)
 
 
 class ObserverPart(Part):

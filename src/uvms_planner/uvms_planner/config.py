@@ -118,8 +118,8 @@ class PlannerConfig(PluginConfig):
     method: str = Field(
         "genetic",
         description="how each step is chosen: genetic (the paper's), least_norm (weighted"
-        " pseudo-inverse), arm_only, that of an installed package, or a class as"
-        " my_package.my_module:MyMethod",
+        " pseudo-inverse), arm_only, vehicle_only (the arm keeps its posture), that of an"
+        " installed package, or a class as my_package.my_module:MyMethod",
     )
     step_s: float = Field(0.5, gt=0, le=10.0, description="s, one planner step")
     sample_s: float = Field(0.05, gt=0, le=1.0, description="s, spacing of the reference's samples")

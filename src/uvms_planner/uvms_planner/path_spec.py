@@ -1,75 +1,101 @@
 """Paths that a scenario file describes relative to where the end effector is at the start."""
 
-from typing import Annotated
+from typing import Any, Self
 
 import numpy as np
-from pydantic import Field
+from pydantic import Field, model_validator
+from scipy.spatial.transform import Rotation
 
 from uvms_core.config import Config
 from uvms_core.signals import Array, PathGoal
+from uvms_planner.paths import (
+    Circle,
+    CsvPath,
+    Helix,
+    Line,
+    PathPhase,
+    PathPoints,
+    PathShape,
+    PhasePath,
+    Waypoints,
+)
 
-Vector3 = Annotated[tuple[float, ...], Field(min_length=3, max_length=3)]
+__all__ = ["WORDS", "PathPhase", "PathSpec", "figure_9"]
 
-
-class PathPhase(Config):
-    """One phase of a path, from rest to rest."""
-
-    duration_s: float = Field(300.0, gt=0, le=86400.0, description="s, time that it takes")
-    to_m: Vector3 = Field(
-        (0.0, 0.0, 0.0), description="m, where it ends, from the start point, map_ned axes"
-    )
-    bulge_m: Vector3 = Field(
-        (0.0, 0.0, 0.0), description="m, offset of the halfway point from the straight line"
-    )
+WORDS = ("phases", "line", "circle", "helix", "waypoints", "csv")
+"""What a path may be."""
 
 
 class PathSpec(Config):
-    """A path of the end effector in phases, each from rest to rest."""
+    """A path of the end effector by one of several words, from rest to rest."""
 
-    phases: tuple[PathPhase, ...] = Field(
-        (PathPhase(),), min_length=1, description="the phases, in order"
+    phases: tuple[PathPhase, ...] | None = Field(
+        None, min_length=1, description="phases in order, each from rest to rest"
     )
-    point_every_s: float = Field(1.0, gt=0, le=60.0, description="s between the goal's points")
+    line: Line | None = Field(None, description="a straight line")
+    circle: Circle | None = Field(None, description="a circle through the start")
+    helix: Helix | None = Field(None, description="turns that go on along their axis")
+    waypoints: Waypoints | None = Field(None, description="a smooth curve through points")
+    csv: CsvPath | None = Field(
+        None, description="a table of times and positions: the name of a CSV file, or the section"
+    )
+    point_every_s: float | None = Field(
+        None,
+        gt=0,
+        le=60.0,
+        description="s between the goal's points; none: 1 s of phases, 0.25 s of others",
+    )
     keep_orientation: bool = Field(
         False, description="keep the tool's orientation of the start along the whole path"
     )
 
+    @model_validator(mode="after")
+    def _is_one_path(self) -> Self:
+        given = [word for word in WORDS if getattr(self, word) is not None]
+        if len(given) != 1:
+            raise ValueError(
+                f"a path is one of {', '.join(WORDS)}; got {' and '.join(given) or 'none'}"
+            )
+        if self.keep_orientation and self.shape.oriented:
+            raise ValueError(
+                f"keep_orientation: {given[0]} has orientations of its own; leave out one of them"
+            )
+        return self
+
+    @property
+    def shape(self) -> PathShape:
+        """The path that the word describes."""
+        if self.phases is not None:
+            return PhasePath(phases=self.phases)
+        return next(own for word in WORDS if (own := getattr(self, word)) is not None)
+
     @property
     def duration_s(self) -> float:
-        """Seconds that all phases take."""
-        return sum(phase.duration_s for phase in self.phases)
+        """Seconds from the start to the end."""
+        return self.shape.seconds
+
+    def points(self) -> PathPoints:
+        """The path from the tool's pose at the start."""
+        shape = self.shape
+        return shape.points(self.point_every_s or shape.usual_spacing_s)
 
     def goal(self, position: Array, quaternion: Array) -> PathGoal:
         """The path as a goal from the tool's present `position` (3,) and `quaternion` (4,)."""
-        times, offsets = [np.zeros(1)], [np.zeros((1, 3))]
-        for phase in self.phases:
-            inside = _times_of(phase.duration_s, self.point_every_s)
-            offsets.append(_phase_points(offsets[-1][-1], phase, inside))
-            times.append(times[-1][-1] + inside)
-        all_times = np.concatenate(times)
-        turns = len(all_times) if self.keep_orientation else 0
-        return PathGoal(
-            times=all_times,
-            positions=np.asarray(position, dtype=float) + np.concatenate(offsets),
-            orientations=np.tile(np.asarray(quaternion, dtype=float), (turns, 1)).reshape(-1, 4),
-        )
+        times, offsets, turns = self.points()
+        start = np.asarray(quaternion, dtype=float)
+        orientations = np.zeros((0, 4))
+        if turns is not None:
+            orientations = (Rotation.from_quat(start) * Rotation.from_quat(turns)).as_quat()
+        elif self.keep_orientation:
+            orientations = np.tile(start, (len(times), 1))
+        return PathGoal(times, np.asarray(position, dtype=float) + offsets, orientations)
 
-
-def _times_of(duration: float, spacing: float) -> Array:
-    count = max(2, int(np.ceil(duration / spacing)))
-    return np.linspace(0.0, duration, count + 1)[1:]
-
-
-def _phase_points(start: Array, phase: PathPhase, times: Array) -> Array:
-    """Straight line plus a parabola that is `bulge_m` half-way, under quintic time scaling.
-
-    p(s) = start + s (end - start) + 4 s (1 - s) bulge, s = 10 u^3 - 15 u^4 + 6 u^5, u = t / T;
-    velocity and acceleration are zero at both ends because those of s are.
-    """
-    u = (times / phase.duration_s)[:, None]
-    s = u**3 * (10 - 15 * u + 6 * u**2)
-    end, bulge = np.array(phase.to_m), np.array(phase.bulge_m)
-    return start + s * (end - start) + 4 * s * (1 - s) * bulge
+    def scaled(self, factor: float) -> "PathSpec":
+        """The path with all its lengths times `factor`, and the same times."""
+        own: Any = self.shape.scaled(factor)
+        word = next(word for word in WORDS if getattr(self, word) is not None)
+        value = own.phases if isinstance(own, PhasePath) else own
+        return self.model_copy(update={word: value})
 
 
 def figure_9() -> PathSpec:

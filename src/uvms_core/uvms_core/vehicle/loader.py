@@ -7,6 +7,7 @@ from typing import Any
 
 from uvms_core.config import validated
 from uvms_core.errors import VehicleFileError
+from uvms_core.vehicle.copies import beside, copied
 from uvms_core.vehicle.derived import MissingShapeError, with_derived_values
 from uvms_core.vehicle.locate import REFERENCE, vehicle_path
 from uvms_core.vehicle.overrides import override
@@ -29,7 +30,11 @@ def load_vehicle(
     values that are not allowed, or that no vehicle can have (`uvms_core.vehicle.plausible`).
     """
     path = vehicle_path(REFERENCE if path is None else path)
-    return vehicle_from_data(read_yaml(path, str(path), VehicleFileError), str(path), overrides)
+    return vehicle_from_data(_read(path), str(path), overrides)
+
+
+def _read(path: Path) -> Any:
+    return beside(read_yaml(path, str(path), VehicleFileError), path.parent)
 
 
 @dataclass(frozen=True)
@@ -46,7 +51,7 @@ def examine_vehicle(
 ) -> Examination:
     """As `load_vehicle`, with all that there is to say about the vehicle; raises as it does."""
     path = vehicle_path(REFERENCE if path is None else path)
-    data = read_yaml(path, str(path), VehicleFileError)
+    data = copied(_read(path), str(path), _complete_data)
     vehicle = vehicle_from_data(data, str(path), overrides)
     parsed = validated(Vehicle, data, str(path), VehicleFileError)
     notes = list(rounding_notes(data, parsed))
@@ -69,6 +74,7 @@ def vehicle_from_data(
 
 def _parsed(data: Any, what: str, overrides: Mapping[str, Any] | None) -> tuple[Vehicle, str]:
     """The file's values with overrides, and what errors call the two; keywords stay."""
+    data = copied(data, what, _complete_data)
     parsed = validated(Vehicle, data, what, VehicleFileError)
     if not overrides:
         return parsed, what
@@ -85,6 +91,10 @@ def _completed(parsed: Vehicle, what: str) -> Vehicle:
         return validated(Vehicle, with_derived_values(parsed), what, VehicleFileError)
     except MissingShapeError as fault:
         raise VehicleFileError(f"{what}: {fault}") from fault
+
+
+def _complete_data(data: Any, what: str) -> dict[str, Any]:
+    return vehicle_from_data(data, what).model_dump(mode="json")
 
 
 def dump_vehicle(vehicle: Vehicle) -> str:

@@ -17,8 +17,8 @@ class ObserverConfig(PluginConfig):
     law: str = Field(
         "momentum_residual",
         description="disturbance observer: momentum_residual (eq. (21) by the model, the rest by"
-        " the momentum residual), that of an installed package, or a class as"
-        " my_package.my_module:MyObserver",
+        " the momentum residual), none (no disturbance), that of an installed package, or a"
+        " class as my_package.my_module:MyObserver",
     )
     external: bool = Field(
         True,

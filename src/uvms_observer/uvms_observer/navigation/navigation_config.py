@@ -1,6 +1,6 @@
 """Parameters of the navigation filter; the sensors' noise is in the vehicle file."""
 
-from typing import ClassVar
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
@@ -25,6 +25,11 @@ class NavigationConfig(PluginConfig, StartConfig):
 
     slot: ClassVar[Slot] = Slot(registry.NAVIGATION_FILTERS, "filter", NavigationEstimator)
 
+    source: Literal["sensors", "truth"] = Field(
+        "sensors",
+        description="sensors (the filter), or truth: the simulation's own state instead of an"
+        " estimate, as a baseline, which no real vehicle has",
+    )
     filter: str = Field(
         "error_state_ekf",
         description="navigation filter: error_state_ekf (eq. (20)), that of an installed package,"

@@ -11,7 +11,8 @@ from uvms_core.ros.part_node import PartNode
 from uvms_core.tick_gate import Tick
 from uvms_observer import NavigationConfig
 from uvms_observer.nodes.checkpoint import Checkpoint
-from uvms_observer.parts import NavigationPart
+from uvms_observer.parts import NavigationPart, navigation_part
+from uvms_observer.truth import TruthPart
 
 
 class CheckpointConfig(Config):
@@ -25,19 +26,20 @@ class CheckpointConfig(Config):
 
 
 class NavigationNode(PartNode):
-    """sensors/* in, odometry out, once a control tick."""
+    """sensors/* in, odometry out, once a control tick; the truth in, where that is the source."""
 
     role = topics.NAVIGATION
     configurations = (NavigationConfig, CheckpointConfig)
-    part: NavigationPart
+    part: NavigationPart | TruthPart
 
-    def make_part(self) -> NavigationPart:
-        """The navigation filter that the parameters name."""
-        part = NavigationPart(self.vehicle, self.config(NavigationConfig), self.period)
+    def make_part(self) -> NavigationPart | TruthPart:
+        """The navigation filter that the parameters name, or the truth."""
+        part = navigation_part(self.vehicle, self.config(NavigationConfig), self.period)
         file = self.config(CheckpointConfig).checkpoint_file
-        self._checkpoint = Checkpoint(Path(file), self.run_id) if file else None
+        kept = file and isinstance(part, NavigationPart)  # the truth needs no memory
+        self._checkpoint = Checkpoint(Path(file), self.run_id) if kept else None
         estimate = self._checkpoint.read() if self._checkpoint else None
-        if estimate is not None:
+        if estimate is not None and isinstance(part, NavigationPart):
             part.remember(estimate)
         return part
 

@@ -1,0 +1,29 @@
+"""How the samples of a vehicle's sensors come to navigation."""
+
+from collections.abc import Iterator
+
+from uvms_core.sensors import SensorType, sensor_types
+from uvms_core.signals import to_nanoseconds
+from uvms_core.tick_gate import Periodic
+from uvms_core.topic import Topic
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Sensor
+
+
+def used_sensors(vehicle: Vehicle) -> Iterator[SensorType]:
+    """Those of the vehicle's sensors whose samples navigation takes."""
+    return (sensor for sensor in sensor_types(vehicle) if sensor.navigation)
+
+
+def sensor_inputs(vehicle: Vehicle) -> dict[Topic, Periodic]:
+    """The topics of those sensors, each at its own rate."""
+    sections = vehicle.sensors.mounted
+    return {
+        sensor.topic: Periodic(sample_period(sections[sensor.name]))
+        for sensor in used_sensors(vehicle)
+    }
+
+
+def sample_period(sensor: Sensor) -> int:
+    """Nanoseconds between two samples of a sensor."""
+    return to_nanoseconds(1.0 / sensor.rate_hz)
