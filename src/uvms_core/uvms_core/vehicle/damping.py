@@ -36,8 +36,8 @@ def _diagonal_or_rows(value: Any, handler: Any) -> Any:
 
 
 def _checked(rows: Rows) -> Rows:
-    lengths = sorted({len(rows), *(len(row) for row in rows)})
-    if lengths != [6]:
+    lengths = sorted({len(row) for row in rows})
+    if len(rows) != 6 or lengths != [6]:
         raise ValueError(f"needs 6 rows of 6 values, has {len(rows)} rows of {lengths}")
     if min(rows[i][i] for i in range(6)) < 0.0:
         raise ValueError("damping is written positive: every value must be >= 0")

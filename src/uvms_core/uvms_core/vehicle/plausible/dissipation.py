@@ -1,12 +1,13 @@
 """Does the hull's damping take energy from every motion, at the surge speeds that the file states?
 
-At a surge speed u small motions x on top of it are damped by D(u) x, D = L + |u| (P + Q_x) with the
-linear matrix L, the products P of `hull.cross_terms` and the column Q_x of the quadratic damping
-that multiplies |u| u. They lose energy, x^T D x >= 0, if and only if the symmetric part of D has no
-negative eigenvalue. D is linear in |u|, so where that is true at both ends of a range of speeds, it
-is true between them. What is quadratic in x comes on top; where that matrix is not diagonal, its
-power is tried in many directions. The Munk moment and all else that follows from added mass is
-conservative and does not belong here; the force of a fin never feeds energy.
+At a surge speed u the resistance to a motion nu = (u, x) is D(u) nu and what is quadratic in x,
+with D = L + |u| (P + Q_u): the linear matrix L, the products P of `hull.cross_terms` and the column
+Q_u of the quadratic damping that multiplies |u| u. The power nu^T D nu that it takes is at least 0
+for every x if and only if the symmetric part of D has no negative eigenvalue. D is linear in |u|,
+so where that is true at both ends of a range of speeds, it is true between them. What is quadratic
+in x takes power by itself where its matrix is diagonal; where it is not, the whole power is tried
+in many directions, which finds, but does not prove. Munk's moment and all else that follows from
+added mass is conservative and does not count here; the force of a fin never feeds energy.
 """
 
 from collections.abc import Iterator
@@ -50,7 +51,7 @@ def check_dissipation(vehicle: Vehicle) -> Iterator[Finding]:
 
 
 def damping_at(hull: Hull, speed: float) -> Array:
-    """D (6, 6) of small motions at a surge speed, m/s, without the fins."""
+    """D (6, 6) at a surge speed, m/s, without the fins and what is quadratic in other motions."""
     column = np.zeros((6, 6))
     column[:, 0] = quadratic_matrix(hull)[:, 0]
     return linear_matrix(hull) + abs(speed) * (lift_matrix(hull) + column)
@@ -71,23 +72,26 @@ def _at_speed(hull: Hull, speed: float) -> Finding | None:
         field,
         f"{value}: at {speed:g} m/s of surge the damping feeds {-values[0]:.3g} W into the motion"
         f" {how} (m/s, rad/s); damping must take energy at all speeds of hull.speeds_m_s ="
-        f" {list(hull.speeds_m_s)}, which bounds entry {AXES[i]}{VELOCITIES[j]} of its matrix"
-        f" against the diagonal ({matrix[i, i]:.4g}, {matrix[j, j]:.4g})",
+        f" {list(hull.speeds_m_s)}; entry {AXES[i]}{VELOCITIES[j]} of its matrix is"
+        f" {matrix[i, j]:.4g}, opposite {matrix[j, i]:.4g}, between {matrix[i, i]:.4g} and"
+        f" {matrix[j, j]:.4g} on the diagonal",
         is_error=True,
     )
 
 
 def _entry(hull: Hull, i: int, j: int) -> tuple[str, str]:
     """Field that most of entry (i, j) of D comes from, and its value in words."""
-    for name in PRODUCTS:
-        given = None if hull.cross_terms is None else getattr(hull.cross_terms, name)
-        if given is not None and place_of(name) in ((i, j), (j, i)):
-            return f"hull.cross_terms.{name}", (
-                f"is {given:g}, {-lift_matrix(hull)[place_of(name)]:.4g} without the added mass's"
-                " part"
-                if hull.cross_terms and hull.cross_terms.added_mass_included
-                else f"is {given:g}"
+    terms = hull.cross_terms
+    for place in ((i, j), (j, i)):
+        for name in PRODUCTS:
+            given = None if terms is None else getattr(terms, name)
+            if terms is None or given is None or place_of(name) != place:
+                continue
+            rest = -lift_matrix(hull)[place]
+            less = (
+                f", {rest:.4g} without the added mass's part" if terms.added_mass_included else ""
             )
+            return f"hull.cross_terms.{name}", f"is {given:g}{less}"
     linear, quadratic = linear_matrix(hull), quadratic_matrix(hull)
     name, matrix = ("linear", linear) if linear[i, j] or j else ("quadratic", quadratic)
     return (
