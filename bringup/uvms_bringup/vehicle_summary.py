@@ -10,6 +10,7 @@ from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_core.vehicle.plausible.propulsion import AXES, axes_out_of_reach, terminal_speed
 from uvms_core.vehicle.plausible.stability import postures
 from uvms_core.vehicle.postures import STOWED
+from uvms_core.vehicle.resistance import axis_resistance
 from uvms_core.vehicle.statics import buoyancy, equilibrium, joint_loads, worst_joint_loads
 from uvms_dynamics import thruster_matrix
 from uvms_dynamics.model.floating import natural_periods
@@ -80,9 +81,10 @@ def _authority(vehicle: Vehicle) -> dict[str, list[float]]:
 
 def _speeds(vehicle: Vehicle) -> dict[str, float]:
     """Speed of the hull at the full thrust along one axis, without the drag of the arm."""
-    hull, forces = vehicle.hull, _authority(vehicle)
+    forces, density = _authority(vehicle), vehicle.environment.water_density_kg_m3
+    linear, quadratic = axis_resistance(vehicle.hull, density)
     return {
-        axis: terminal_speed(forces[axis][1], hull.linear_damping[k], hull.quadratic_damping[k])
+        axis: terminal_speed(forces[axis][1], float(linear[k]), float(quadratic[k]))
         for k, axis in enumerate(AXES[:3])
     }
 

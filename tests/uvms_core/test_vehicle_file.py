@@ -38,6 +38,7 @@ def test_counts_and_names():
 
 UNITS = "_(m|kg|n|s|deg|hz|pa|m3|m2|s2|nm|rad)(_s|_s2|_m2|_m3|_rad)?$"
 WITHOUT_UNIT = {"roll_added_inertia_fraction", "axial_added_mass_fraction", "scale_error"}
+WITHOUT_UNIT |= {"aspect_ratio", "drag_coefficient", "plate_drag_coefficient"}
 
 
 def scalar_fields(section):
@@ -98,7 +99,7 @@ def test_unknown_override_lists_the_choices():
     assert refusal(hull__mas_kg=3.0) == (
         "override hull.mas_kg: hull has no 'mas_kg'; choose from spheroid, volume_m3, mass_kg,"
         " cg_m, cb_m, inertia_kg_m2, added_mass, attachments, linear_damping,"
-        " quadratic_damping"
+        " quadratic_damping, cross_terms, fins, speeds_m_s"
     )
     assert refusal(wings=3.0) == (
         "override wings: the vehicle file has no 'wings'; choose from name, environment, hull,"

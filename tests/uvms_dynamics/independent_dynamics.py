@@ -132,15 +132,74 @@ def drag_force(vehicle, nu_r, q, q_dot):
     """Damping of the hull and drag of all links ON the system (6+n,)."""
     zeta, hull = np.concatenate([nu_r, q_dot]), vehicle.hull
     force = np.zeros(len(zeta))
-    for k in range(6):
-        force[k] = -hull.linear_damping[k] * nu_r[k]
-        force[k] -= hull.quadratic_damping[k] * nu_r[k] ** 2 * np.sign(nu_r[k])
+    linear, quadratic = as_matrix(hull.linear_damping), as_matrix(hull.quadratic_damping)
+    for i in range(6):
+        for j in range(6):
+            force[i] -= linear[i, j] * nu_r[j]
+            force[i] -= quadratic[i, j] * nu_r[j] ** 2 * np.sign(nu_r[j])
+    force[:6] += lift_force(hull.cross_terms, abs(nu_r[0]), nu_r)
+    for fin in hull.fins:
+        force[:6] += fin_force(vehicle, fin, nu_r)
     poses = link_poses(vehicle.arm, q)
     for i, link in enumerate(vehicle.arm.links):
         jacobian = link_jacobian(poses, i)
         for cylinder in link.drag:
             force += jacobian.T @ cylinder_drag(vehicle, cylinder, jacobian @ zeta)
     return force
+
+
+def as_matrix(damping):
+    return np.diag(damping) if np.ndim(damping) == 1 else np.array(damping)
+
+
+def lift_force(terms, u, nu):
+    """Products with the surge speed, of lift alone."""
+    if terms is None:
+        return np.zeros(6)
+    assert not terms.added_mass_included
+    _, v, w, p, q, r = nu
+    return u * np.array(
+        [
+            0.0,
+            terms.Y_uv * v + terms.Y_ur * r,
+            terms.Z_uw * w + terms.Z_uq * q,
+            terms.K_up * p,
+            terms.M_uw * w + terms.M_uq * q,
+            terms.N_uv * v + terms.N_ur * r,
+        ]
+    )
+
+
+def fin_force(vehicle, fin, nu):
+    """Lift, drag and stalled normal force of a fin from its angle of attack, by trigonometry."""
+    place, span = np.array(fin.position_m), np.cross(fin.normal, fin.chord)
+    velocity = nu[:3] + np.cross(nu[3:], place)
+    velocity = velocity - span * (span @ velocity)
+    setting = np.radians(fin.incidence_deg)
+    angle = np.arctan2(velocity @ fin.normal, velocity @ fin.chord) + setting
+    plate = np.cos(setting) * np.array(fin.normal) + np.sin(setting) * np.array(fin.chord)
+    ratio = (np.sin(angle) / np.sin(np.radians(fin.stall_deg))) ** 8
+    attached = 1.0 / (1.0 + ratio)
+    slope = 1.0 / (1.0 / (1.8 * np.pi) + 1.0 / (np.pi * fin.aspect_ratio))
+    c_lift = attached * slope * 0.5 * np.sin(2.0 * angle)
+    c_drag = fin.drag_coefficient + c_lift**2 / (0.9 * np.pi * fin.aspect_ratio)
+    c_plate = (1.0 - attached) * fin.plate_drag_coefficient * np.sin(angle)
+    speed = np.sqrt(velocity @ velocity)
+    upwash = np.cross(span, velocity) / speed  # across the flow, towards -normal where it is ahead
+    force = c_lift * upwash - c_drag * velocity / speed - c_plate * plate
+    force = 0.5 * vehicle.environment.water_density_kg_m3 * fin.area_m2 * speed**2 * force
+    return np.concatenate([force, np.cross(place, force)])
+
+
+KAPPA = {1: 0.53, 2: 0.58, 5: 0.62, 10: 0.68, 20: 0.74, 40: 0.82, 50: 0.87, 100: 0.98, 200: 1.0}
+
+
+def end_effect(cylinder):
+    """DNV-RP-C205, table 6-2; with one free end the length counts twice, with none as endless."""
+    if cylinder.free_ends == 0:
+        return 1.0
+    slenderness = cylinder.length_m / cylinder.radius_m / cylinder.free_ends
+    return np.interp(np.log(slenderness), np.log(list(KAPPA)), list(KAPPA.values()))
 
 
 def cylinder_drag(vehicle, cylinder, twist):
@@ -176,7 +235,7 @@ def line_drag(vehicle, cylinder, velocity):
     c_d = drag_coefficient(
         vehicle.arm.drag_coefficient, speed * diameter / water.kinematic_viscosity_m2_s
     )
-    return -0.5 * water.water_density_kg_m3 * c_d * diameter * speed * across
+    return -0.5 * water.water_density_kg_m3 * end_effect(cylinder) * c_d * diameter * speed * across
 
 
 def drag_coefficient(table, reynolds):

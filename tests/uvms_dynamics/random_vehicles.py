@@ -36,6 +36,7 @@ def random_vehicle(seed: int, n: int, **changes) -> Vehicle:
     data["hull"].update(_body(rng, mass=50.0), spheroid=None)
     data["hull"]["linear_damping"] = rng.uniform(0.0, 50.0, 6).tolist()
     data["hull"]["quadratic_damping"] = rng.uniform(0.0, 100.0, 6).tolist()
+    data["hull"].update(fins=[], cross_terms=None)
     joint, link = data["arm"]["joints"][0], data["arm"]["links"][0]
     data["arm"].update(
         base=_mounting(rng),
@@ -45,7 +46,41 @@ def random_vehicle(seed: int, n: int, **changes) -> Vehicle:
         joints=[{**joint, **_joint(rng), "name": f"j{i}"} for i in range(n)],
         links=[{**link, **_link(rng), "name": f"l{i}"} for i in range(n)],
     )
+    if seed % 2:
+        data["hull"].update(_resistance(np.random.default_rng(seed)))
     return changed(vehicle_from_data(data), **changes)
+
+
+def _resistance(rng: np.random.Generator) -> dict:
+    """Full damping that takes energy, products with the surge speed, and fins anywhere."""
+    root, skew = rng.normal(size=(6, 6)), rng.normal(size=(6, 6))
+    quadratic = rng.normal(size=(6, 6))
+    # |nu_i| |nu_j|^2 <= (|nu_i|^3 + 2 |nu_j|^3) / 3, so that much on the diagonal is enough.
+    size = np.abs(quadratic - np.diag(np.diag(quadratic)))
+    np.fill_diagonal(quadratic, (size.sum(axis=1) + 2.0 * size.sum(axis=0)) / 3.0)
+    lift = {"added_mass_included": False, "Y_uv": -30.0, "Y_ur": 6.0, "N_uv": 10.0, "N_ur": -4.0}
+    lift |= {"Z_uw": -28.0, "Z_uq": -6.0, "M_uw": -11.0, "M_uq": -4.0, "K_up": -0.5}
+    return {
+        "linear_damping": (10.0 * (root @ root.T + skew - skew.T + 3.0 * np.eye(6))).tolist(),
+        "quadratic_damping": (10.0 * quadratic).tolist(),
+        "cross_terms": lift,
+        "speeds_m_s": [0.0, 0.5],
+        "fins": [_fin(rng, f"fin {k}") for k in range(rng.integers(1, 4))],
+    }
+
+
+def _fin(rng: np.random.Generator, name: str) -> dict:
+    axes = np.linalg.qr(rng.normal(size=(3, 3)))[0]
+    return {
+        "name": name,
+        "position_m": rng.normal(size=3).tolist(),
+        "normal": axes[0].tolist(),
+        "chord": axes[1].tolist(),
+        "area_m2": rng.uniform(0.01, 0.1),
+        "aspect_ratio": rng.uniform(0.5, 6.0),
+        "incidence_deg": rng.uniform(-20.0, 20.0),
+        "stall_deg": rng.uniform(10.0, 40.0),
+    }
 
 
 def changed(
@@ -75,6 +110,7 @@ def changed(
 def _remove_drag(data: dict) -> None:
     """And all friction and stops."""
     data["hull"].update(linear_damping=[0.0] * 6, quadratic_damping=[0.0] * 6)
+    data["hull"].update(fins=[], cross_terms=None)
     for link in data["arm"]["links"]:
         link["drag"] = []
     for joint in data["arm"]["joints"]:

@@ -80,11 +80,12 @@ def test_truth_says_what_the_current_does_to_the_hull():
     for link in data["arm"]["links"]:  # an arm that weighs nothing to speak of
         link.update(mass_kg=1e-9, volume_m3=1e-12, inertia_kg_m2=[1e-12] * 3, drag=[])
         link["added_mass"] = [0.0] * 6
+    data["hull"]["fins"] = []  # they are set at an angle
     data["hull"].update(mass_kg=1025.0 * data["hull"]["volume_m3"], cg_m=[0.0, 0.0, 0.01])
     vehicle = vehicle_from_data(data)
     plant = Plant(vehicle, PlantConfig(current_ned_m_s=(0.5, 0.0, 0.0)), seed=1)
     truth = plant.truth()
-    drag = 9.61 * 0.5 + 17.4 * 0.5**2
+    drag = 4.49 * 0.5 + 8.12 * 0.5**2
     np.testing.assert_allclose(truth.disturbance.external[0], drag, rtol=1e-6)
     np.testing.assert_allclose(truth.disturbance.external[1:], 0.0, atol=1e-9)
     np.testing.assert_allclose(truth.odometry.nu, 0.0, atol=1e-15)

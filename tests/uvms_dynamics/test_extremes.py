@@ -82,7 +82,7 @@ def test_at_rest_over_ground_in_a_current(name, current):
     run.state[VELOCITY : VELOCITY + 3] = -drift
     states = assert_within_its_energy(run, 20.0)
     speed = np.linalg.norm(states[:, VELOCITY : VELOCITY + 3], axis=1)
-    assert speed[-1] < max(1.0, 0.5 * speed[0])  # the water takes it along, or it floats up
+    assert speed[-1] < max(1.5, 0.5 * speed[0])  # the water takes it along, or it floats up
 
 
 def rotation_of(state):

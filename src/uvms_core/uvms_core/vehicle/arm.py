@@ -107,6 +107,20 @@ class DragCylinder(Part):
     stations: int = Field(
         default=3, ge=1, le=50, description="number of Gauss-Legendre points along the axis"
     )
+    free_ends: int = Field(
+        default=1,
+        ge=0,
+        le=2,
+        description="ends around which the water flows: 1, a link that hangs on the one before it;"
+        " 2, a cylinder by itself; 0, one between two bodies that stop the flow around its ends",
+    )
+    end_effect: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=1.0,
+        description="factor on the cross-flow drag of an endless cylinder; none: by length over"
+        " diameter and free_ends, after DNV-RP-C205",
+    )
 
 
 CYLINDER: Any = "cylinder"  # the keyword, for fields of any type

@@ -4,12 +4,13 @@ from typing import Annotated, Any
 
 from pydantic import Field, field_validator
 
+from uvms_core.vehicle.damping import CrossTerms, Damping
+from uvms_core.vehicle.fins import Fin
 from uvms_core.vehicle.parts import (
     AddedMass,
     Inertia,
     Part,
     Vector3,
-    Vector6,
     or_keyword,
     unique_names,
 )
@@ -83,12 +84,25 @@ class Hull(Part):
     attachments: tuple[Attachment, ...] = Field(
         default=(), description="ballast, foam, instruments; the loader adds them to the hull"
     )
-    linear_damping: Vector6 = Field(
-        description="linear damping in X Y Z K M N, N per m/s and N m per rad/s, each >= 0"
+    linear_damping: Damping = Field(
+        description="linear damping in X Y Z K M N, N per m/s and N m per rad/s: 6 diagonal values"
+        " or 6 rows, each value on the diagonal >= 0"
     )
-    quadratic_damping: Vector6 = Field(
-        description="quadratic damping in X Y Z K M N, N per (m/s)^2 and N m per (rad/s)^2,"
-        " each >= 0"
+    quadratic_damping: Damping = Field(
+        description="quadratic damping in X Y Z K M N, N per (m/s)^2 and N m per (rad/s)^2: 6"
+        " diagonal values or 6 rows, each value on the diagonal >= 0; column j is multiplied by"
+        " |nu_j| nu_j"
+    )
+    cross_terms: CrossTerms | None = Field(
+        default=None,
+        description="products with the surge speed of a slender hull, as they are published; none:"
+        " there are none",
+    )
+    fins: tuple[Fin, ...] = Field(default=(), description="rudders, stern planes and wings")
+    speeds_m_s: tuple[float, float] = Field(
+        default=(0.0, 3.0),
+        description="least and greatest surge speed, m/s, between which damping and cross_terms"
+        " must take energy from every motion",
     )
 
     @field_validator("attachments")
@@ -97,9 +111,15 @@ class Hull(Part):
         unique_names(value, "attachment")
         return value
 
-    @field_validator("linear_damping", "quadratic_damping")
+    @field_validator("fins")
     @classmethod
-    def _dissipates(cls, value: Vector6) -> Vector6:
-        if min(value) < 0.0:
-            raise ValueError("damping is written positive: every value must be >= 0")
+    def _fins_named_once(cls, value: tuple[Fin, ...]) -> tuple[Fin, ...]:
+        unique_names(value, "fin")
+        return value
+
+    @field_validator("speeds_m_s")
+    @classmethod
+    def _range(cls, value: tuple[float, float]) -> tuple[float, float]:
+        if not 0.0 <= value[0] <= value[1]:
+            raise ValueError(f"must be 0 <= least <= greatest; is {value[0]:g}, {value[1]:g}")
         return value

@@ -44,7 +44,7 @@ def _symmetry_notes(given: Sequence[Any], taken: tuple[Any, ...], path: str) -> 
     for i, row in enumerate(taken):
         for j in range(i):
             pair = float(given[j][i]), float(given[i][j])
-            if pair != (row[j], row[j]):
+            if pair != (taken[j][i], row[j]):
                 yield (
                     f"{path}: row {j + 1}, column {i + 1} is {pair[0]:g} and row {i + 1}, column"
                     f" {j + 1} is {pair[1]:g}; both taken as {row[j]:g}"

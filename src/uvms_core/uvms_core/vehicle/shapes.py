@@ -55,6 +55,29 @@ def cylinder_surface(shape: DragCylinder) -> float:
     return 2.0 * math.pi * shape.radius_m * shape.length_m
 
 
+SLENDERNESS = (1.0, 2.0, 5.0, 10.0, 20.0, 40.0, 50.0, 100.0)
+END_EFFECT = (0.53, 0.58, 0.62, 0.68, 0.74, 0.82, 0.87, 0.98)
+"""Cross-flow drag of a cylinder with two free ends over that of an endless one, by its length over
+diameter, below the drag crisis: DNV-RP-C205 (2010), table 6-2; at 1: Hoerner, Fluid-Dynamic Drag
+(1965), ch. 3, 0.63 over 1.2."""
+
+
+def end_effect(shape: DragCylinder) -> float:
+    """Factor on the cross-flow drag for the water that flows around the cylinder's ends.
+
+    An end that abuts on another body mirrors the flow, so that the length counts twice with one
+    free end; with none the cylinder is an endless one (DNV-RP-C205, sec. 6.7.3). Between the points
+    of the table linear in the logarithm of the slenderness, beyond 100 towards 1 at 200.
+    """
+    if shape.end_effect is not None:
+        return shape.end_effect
+    if shape.free_ends == 0:
+        return 1.0
+    slenderness = shape.length_m / (2.0 * shape.radius_m) * (2.0 if shape.free_ends == 1 else 1.0)
+    points = np.log([*SLENDERNESS, 200.0])
+    return float(np.interp(math.log(slenderness), points, [*END_EFFECT, 1.0]))
+
+
 def cylinder_inertia(shape: DragCylinder, mass: float) -> Array:
     """Inertia (3, 3) about the centre: m(3r^2+l^2)/12 across the axis, m r^2/2 along it."""
     r, length = shape.radius_m, shape.length_m

@@ -2,13 +2,13 @@
 
 import numpy as np
 
+from uvms_dynamics.kernels.damping import hull_damping
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.layout import ADDED_MASS, FIRST, HULL, JOINTS
 from uvms_dynamics.kernels.motion import (
     check_motion,
     hull_bias_force,
-    hull_damping,
     into_body,
     into_hull,
 )

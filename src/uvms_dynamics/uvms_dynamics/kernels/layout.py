@@ -23,7 +23,8 @@ def _columns(widths: dict[str, int], begin: int = 0) -> Iterable[np.int64]:
     return np.concatenate([[begin], ends[:-1]]).astype(np.int64)
 
 
-# Model (rows, 48): bodies 0..n, fixtures, then drag cylinders and coefficients, counted by item.
+# Model (rows, 48): bodies 0..n, fixtures, then drag cylinders, coefficients, damping matrices and
+# fins, counted by item.
 MODEL_COLUMNS = np.int64(48)
 
 # Bodies, in rows 0..n: rigid body and added mass in one inertia about the frame's origin; weight
@@ -58,7 +59,7 @@ LOWER, UPPER, STIFFNESS, DISSIPATION, EFFORT, DRAG_BEGIN, DRAG_END = _rest
 # The hull, in row 0 instead
 HULL = np.int64(0)
 HULL_ONLY = {
-    "DAMPING": 6,  # body axes
+    "DAMPING": 6,  # body axes; the diagonals, where the matrices are diagonal
     "QUADRATIC": 6,
     "COS_TURN": 1,  # hull frame in the body frame: Rz(turn)
     "SIN_TURN": 1,
@@ -68,9 +69,12 @@ HULL_ONLY = {
     "STRIPS": 1,  # on each cylinder
     "CROSS_FLOW": 1,  # first items of the drag coefficients
     "AXIAL": 1,
+    "MATRICES": 1,  # first item of full damping matrices (6, 6): linear, quadratic, products; or 0
+    "FINS": 1,  # first item of the fins
+    "FIN_COUNT": 1,
 }
 DAMPING, QUADRATIC, COS_TURN, SIN_TURN, *_rest = _columns(HULL_ONLY, _BODY_END)
-JOINTS, CYLINDERS, GROUPS, STRIPS, CROSS_FLOW, AXIAL = _rest
+JOINTS, CYLINDERS, GROUPS, STRIPS, CROSS_FLOW, AXIAL, MATRICES, FINS, FIN_COUNT = _rest
 
 # Fixtures, in row n + 1
 FIXTURES = {
@@ -95,6 +99,22 @@ CYLINDER = {
     "STRIP": 2,  # of the first one: place along the axis, 1/2 rho x diameter x length; then others
 }
 CENTER, AXIS, CROSS_REYNOLDS, AXIAL_REYNOLDS, AXIAL_AREA, STRIP = _columns(CYLINDER)
+
+# Fins, one after the other; body axes
+FIN = {
+    "FIN_POSITION": 3,
+    "FIN_CHORD": 3,
+    "FIN_NORMAL": 3,
+    "FIN_PRESSURE": 1,  # 1/2 rho x area
+    "FIN_SLOPE": 1,  # of the lift
+    "FIN_STALL": 1,  # 1 / sin^2 of the stall angle
+    "FIN_DRAG": 1,  # coefficient along the flow
+    "FIN_INDUCED": 1,  # drag per lift^2
+    "FIN_PLATE": 1,  # coefficient across the flow
+}
+FIN_POSITION, FIN_CHORD, FIN_NORMAL, FIN_PRESSURE, FIN_SLOPE, FIN_STALL, *_rest = _columns(FIN)
+FIN_DRAG, FIN_INDUCED, FIN_PLATE = _rest
+FIN_NUMBERS = np.int64(sum(FIN.values()))
 
 # Coefficients of drag: pairs (a, b) of C(Re) = a + b Re in the cells of `drag_table`
 

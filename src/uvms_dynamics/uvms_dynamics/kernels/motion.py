@@ -3,31 +3,28 @@
 import numpy as np
 
 from uvms_dynamics.kernels.arithmetic import sine_cosine
+from uvms_dynamics.kernels.damping import hull_damping
 from uvms_dynamics.kernels.drag import SLOT_NUMBERS, gather_drag
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_dynamics.kernels.layout import (
     COS,
     COS_TURN,
-    DAMPING,
     FORCE,
     GROUPS,
     HULL,
     INERTIA,
     JOINTS,
     OFFSET,
-    QUADRATIC,
     SIN,
     SIN_TURN,
     WORK_COLUMNS,
 )
 from uvms_dynamics.kernels.numba_internals.lanes import LANES
-from uvms_dynamics.kernels.numba_internals.primitives import fabs
 from uvms_dynamics.kernels.spatial import (
     angular,
     gyroscopic,
     linear,
-    load6,
     minus,
     motion_to_child,
     pair,
@@ -133,20 +130,6 @@ def hull_bias_force(model, v, down):
     """C(v) v less weight and buoyancy, with damping, of the hull, in its frame."""
     damping = into_hull(model, hull_damping(model, into_body(model, v)))
     return plus(undamped_force(model, HULL, v, down), damping)
-
-
-@inner
-def hull_damping(model, nu):
-    """Linear and quadratic damping of each degree of freedom, (d_k + d_kk |x|) x; body axes."""
-    d, e = load6(model, HULL, DAMPING), load6(model, HULL, QUADRATIC)
-    return (
-        (d[0] + e[0] * fabs(nu[0])) * nu[0],
-        (d[1] + e[1] * fabs(nu[1])) * nu[1],
-        (d[2] + e[2] * fabs(nu[2])) * nu[2],
-        (d[3] + e[3] * fabs(nu[3])) * nu[3],
-        (d[4] + e[4] * fabs(nu[4])) * nu[4],
-        (d[5] + e[5] * fabs(nu[5])) * nu[5],
-    )
 
 
 @inner

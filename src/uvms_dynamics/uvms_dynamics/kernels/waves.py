@@ -18,13 +18,13 @@ import numpy as np
 from numba import types
 from numba.extending import overload
 
+from uvms_dynamics.kernels.damping import hull_damping
 from uvms_dynamics.kernels.drag import gather_drag
 from uvms_dynamics.kernels.inertia import load_inertia
 from uvms_dynamics.kernels.jit import OPTIONS, inner
 from uvms_dynamics.kernels.layout import FORCE, HULL
 from uvms_dynamics.kernels.motion import (
     hull_bias_force,
-    hull_damping,
     into_body,
     into_hull,
     set_link_force,

@@ -18,6 +18,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_core.vehicle import Environment, Hull, Joint, Link, Vehicle
 from uvms_core.vehicle.arm import Arm, DragCoefficient, DragCylinder
+from uvms_core.vehicle.damping import linear_matrix, quadratic_matrix
 from uvms_core.vehicle.frames import (
     IDENTITY,
     Pose,
@@ -26,11 +27,12 @@ from uvms_core.vehicle.frames import (
     joint_placements,
     mounting_pose,
 )
-from uvms_core.vehicle.shapes import cylinder_surface, move_to_origin
+from uvms_core.vehicle.shapes import cylinder_surface, end_effect, move_to_origin
 from uvms_dynamics.kernels import layout
 from uvms_dynamics.kernels.drag_table import cell_lines
 from uvms_dynamics.kernels.numba_internals.lanes import LANES
 from uvms_dynamics.kernels.rotations import skew
+from uvms_dynamics.model.resistance_table import damping_matrices, fin_numbers
 
 Model = Array
 """Table (rows, 48), C-contiguous, SI and rad; columns: `uvms_dynamics.kernels.layout`."""
@@ -55,11 +57,15 @@ def build_model(vehicle: Vehicle) -> Model:
     _set_body(rows[0], vehicle.hull, body_poses(arm)[0], environment)
     _set_hull(rows[0], vehicle.hull, turns[0])
     groups, strips, ends = _drag_groups(arm, poses, environment)
-    tables = [rows, *(_as_rows(x) for x in (groups, *map(cell_lines, _coefficients(arm))))]
+    matrices, fins = damping_matrices(vehicle.hull), fin_numbers(vehicle.hull, environment)
+    blocks = (groups, *map(cell_lines, _coefficients(arm)), matrices, fins)
+    tables = [rows, *map(_as_rows, blocks)]
     starts = np.cumsum([table.size for table in tables])
     _put(rows[0], layout.JOINTS, [n])
     _put(rows[0], layout.CYLINDERS, [starts[0], len(groups), strips])
     _put(rows[0], layout.CROSS_FLOW, starts[1:3])
+    _put(rows[0], layout.MATRICES, [starts[3] if matrices.size else 0])
+    _put(rows[0], layout.FINS, [starts[4], len(fins)])
     for i, (link, joint, mount, pose) in enumerate(
         zip(arm.links, arm.joints, mounts, poses, strict=True), start=1
     ):
@@ -130,8 +136,9 @@ def _set_body(row: Array, body: Hull | Link, pose: Pose, environment: Environmen
 
 
 def _set_hull(row: Array, hull: Hull, turn: float) -> None:
-    _put(row, layout.DAMPING, hull.linear_damping)
-    _put(row, layout.QUADRATIC, hull.quadratic_damping)
+    if not damping_matrices(hull).size:
+        _put(row, layout.DAMPING, np.diag(linear_matrix(hull)))
+        _put(row, layout.QUADRATIC, np.diag(quadratic_matrix(hull)))
     _put(row, layout.COS_TURN, [math.cos(turn)])
     _put(row, layout.SIN_TURN, [math.sin(turn)])
 
@@ -208,7 +215,9 @@ def _cylinder(cylinder: DragCylinder, pose: Pose, environment: Environment) -> A
     half, pressure = 0.5 * cylinder.length_m, 0.5 * environment.water_density_kg_m3
     viscosity, diameter = environment.kinematic_viscosity_m2_s, 2.0 * cylinder.radius_m
     nodes, weights = np.polynomial.legendre.leggauss(cylinder.stations)
-    strips = np.column_stack([half * nodes, pressure * diameter * half * weights])
+    strips = np.column_stack(
+        [half * nodes, end_effect(cylinder) * pressure * diameter * half * weights]
+    )
     row = np.zeros(int(layout.STRIP) + strips.size)
     _put(row, layout.CENTER, position + rotation @ cylinder.center_m)
     _put(row, layout.AXIS, rotation @ cylinder.axis)

@@ -11,7 +11,9 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_core.vehicle import Environment, Hull, Link
 from uvms_core.vehicle.arm import DragCoefficient, DragCylinder
-from uvms_core.vehicle.shapes import cylinder_surface
+from uvms_core.vehicle.damping import lift_matrix, linear_matrix, quadratic_matrix
+from uvms_core.vehicle.fins import fin_wrench
+from uvms_core.vehicle.shapes import cylinder_surface, end_effect
 from uvms_dynamics.kernels.drag_table import resample
 
 
@@ -74,9 +76,15 @@ def weight_and_buoyancy(body: Hull | Link, down: Array, environment: Environment
     return np.concatenate([weight + buoyancy, moment])
 
 
-def hull_damping(hull: Hull, nu_r: Array) -> Array:
-    """D(nu_r) nu_r (6,): linear and quadratic, each degree of freedom by itself."""
-    return (np.array(hull.linear_damping) + np.array(hull.quadratic_damping) * abs(nu_r)) * nu_r
+def hull_damping(hull: Hull, nu_r: Array, environment: Environment) -> Array:
+    """D(nu_r) nu_r (6,) with the fins: (L + Q diag(|nu_r|) + |u| P) nu_r less the fins' force.
+
+    P: products with the surge speed, without what the added mass has of them.
+    """
+    matrix = linear_matrix(hull) + quadratic_matrix(hull) * abs(nu_r)
+    matrix += abs(nu_r[0]) * lift_matrix(hull)
+    fins = [fin_wrench(fin, nu_r, environment.water_density_kg_m3) for fin in hull.fins]
+    return matrix @ nu_r - np.sum(fins, axis=0) if fins else matrix @ nu_r
 
 
 def cylinder_drag(
@@ -88,7 +96,8 @@ def cylinder_drag(
 ) -> Array:
     """Drag ON a link (6,) by one cylinder, about the link's origin.
 
-    Across the axis by strips, df = -1/2 rho C_D(Re) D |v_n| v_n dl with each strip's own Re, and
+    Across the axis by strips, df = -1/2 rho kappa C_D(Re) D |v_n| v_n dl with each strip's own Re
+    and the end effect kappa of the whole cylinder, and
     skin friction along it, f = -1/2 rho C_f(Re) S |v_a| v_a, by the cylinder's length and side.
     """
     axis, diameter = np.array(cylinder.axis), 2.0 * cylinder.radius_m
@@ -105,7 +114,7 @@ def cylinder_drag(
         speed = float(np.linalg.norm(velocity))
         area = diameter * 0.5 * cylinder.length_m * weight
         c_d = np.interp(speed * diameter / viscosity, *resample(across))
-        total += _at(place, -pressure * c_d * area * speed * velocity)
+        total += _at(place, -pressure * end_effect(cylinder) * c_d * area * speed * velocity)
     center = np.array(cylinder.center_m)
     speed = float(axis @ (nu_r[:3] + np.cross(nu_r[3:], center)))
     c_f = np.interp(abs(speed) * cylinder.length_m / viscosity, *resample(along))

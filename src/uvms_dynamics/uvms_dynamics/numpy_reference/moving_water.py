@@ -108,7 +108,7 @@ def _needed(vehicle: Vehicle, part: _Body, flow: FlowField, twist: Array, rate: 
 def _drag(vehicle: Vehicle, body: Hull | Link, through: Array) -> Array:
     """Drag ON a body (6,)."""
     if isinstance(body, Hull):
-        return -body_forces.hull_damping(body, through)
+        return -body_forces.hull_damping(body, through, vehicle.environment)
     across, along = vehicle.arm.drag_coefficient, vehicle.arm.friction_coefficient
     parts = [
         body_forces.cylinder_drag(each, across, along, through, vehicle.environment)

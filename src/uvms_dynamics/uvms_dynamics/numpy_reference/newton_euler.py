@@ -43,7 +43,7 @@ def inverse_dynamics(
     reaction, torques = _arm_reaction(vehicle, motion, q, q_dot, q_ddot, weights=True)
     own = body_forces.rigid_body(vehicle.hull, motion)
     own += body_forces.added_mass(vehicle.hull, motion)
-    own += body_forces.hull_damping(vehicle.hull, motion.relative()[0])
+    own += body_forces.hull_damping(vehicle.hull, motion.relative()[0], vehicle.environment)
     own -= body_forces.weight_and_buoyancy(vehicle.hull, motion.down, vehicle.environment)
     rotors = [joint.rotor_inertia_kg_m2 for joint in vehicle.arm.joints]
     return np.concatenate([own + reaction, torques + np.array(rotors) * q_ddot])

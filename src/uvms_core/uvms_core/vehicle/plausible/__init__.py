@@ -8,6 +8,7 @@ and a bound; bounds are ratios wherever they can be, so that they fit vehicles o
 
 from uvms_core.vehicle.plausible.angles import check_angles
 from uvms_core.vehicle.plausible.bodies import check_added_mass, check_bodies
+from uvms_core.vehicle.plausible.dissipation import check_dissipation
 from uvms_core.vehicle.plausible.drives import check_drives
 from uvms_core.vehicle.plausible.finding import Finding
 from uvms_core.vehicle.plausible.instruments import check_instruments
@@ -25,6 +26,7 @@ _CHECKS = (
     check_angles,
     check_propulsion,
     check_mounting,
+    check_dissipation,
 )
 _ODDITIES = (
     check_added_mass,

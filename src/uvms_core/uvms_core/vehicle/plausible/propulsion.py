@@ -7,6 +7,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_core.vehicle.plausible.extents import bare_hull_extent
 from uvms_core.vehicle.plausible.finding import Finding, graded
+from uvms_core.vehicle.resistance import axis_resistance
 from uvms_core.vehicle.statics import buoyancy, thruster_columns, wrench_reach
 from uvms_core.vehicle.vehicle import Vehicle
 
@@ -112,15 +113,15 @@ HELD_PART = 0.5
 
 def _speed(vehicle: Vehicle) -> Iterator[Finding]:
     push = wrench_reach(vehicle)
-    hull = vehicle.hull
-    for k, (d, dd) in enumerate(zip(hull.linear_damping, hull.quadratic_damping, strict=True)):
+    linear, quadratic = axis_resistance(vehicle.hull, vehicle.environment.water_density_kg_m3)
+    for k, (d, dd) in enumerate(zip(linear, quadratic, strict=True)):
         if push[k] > 0.0 and d == 0.0 and dd == 0.0:
             yield Finding(
                 "hull.quadratic_damping",
                 f"neither linear nor quadratic damping in {AXES[k]}, where the thrusters push: no"
                 " water brakes it",
             )
-    speed = terminal_speed(float(push[0]), hull.linear_damping[0], hull.quadratic_damping[0])
+    speed = terminal_speed(float(push[0]), linear[0], quadratic[0])
     if np.isfinite(speed) and speed > FASTEST:
         yield Finding(
             "hull.quadratic_damping",

@@ -7,6 +7,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle, joint_limits
+from uvms_core.vehicle.resistance import axis_resistance
 from uvms_dynamics.kernels import inverse_dynamics
 from uvms_dynamics.model import thruster_matrix
 from uvms_dynamics.model.vehicle_table import Model
@@ -99,11 +100,12 @@ def _against_stops(vehicle: Vehicle, start: Array, q: Array, pressing: bool) -> 
 
 def _at_top_speed(vehicle: Vehicle, rest: Array) -> Iterator[tuple[str, Array]]:
     """At the speed along each axis to which all thrusters drive the hull alone."""
-    hull = vehicle.hull
+    density = vehicle.environment.water_density_kg_m3
+    linear, quadratic = axis_resistance(vehicle.hull, density)
     limits = [thruster.limit_n for thruster in vehicle.thrusters]
     push = np.abs(thruster_matrix(vehicle)) @ limits
     for k, axis in enumerate(AXES):
-        speed = _terminal_speed(push[k], hull.linear_damping[k], hull.quadratic_damping[k])
+        speed = _terminal_speed(push[k], float(linear[k]), float(quadratic[k]))
         if not speed:
             continue
         state = rest.copy()
