@@ -96,7 +96,7 @@ def _against_stops(vehicle: Vehicle, start: Array, q: Array, pressing: bool) -> 
 def _at_top_speed(vehicle: Vehicle, rest: Array) -> Iterator[tuple[str, Array]]:
     """At the speed along each axis to which all thrusters drive the hull alone."""
     hull = vehicle.hull
-    limits = [thruster.limit_n for thruster in vehicle.thrusters]
+    limits = [thruster.greatest_n for thruster in vehicle.thrusters]
     push = np.abs(thruster_matrix(vehicle)) @ limits
     for k, axis in enumerate(AXES):
         speed = _terminal_speed(push[k], hull.linear_damping[k], hull.quadratic_damping[k])
