@@ -13,10 +13,12 @@ from uvms_core.signals import (
     ImuSample,
     JointStates,
     PressureSample,
+    SensorGap,
     to_nanoseconds,
 )
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation.sensors.delivery import Delivery
 from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
@@ -28,6 +30,8 @@ class SensorFrame:
 
     samples: Mapping[str, tuple[Any, ...]]
     joints: JointStates
+    gaps: tuple[SensorGap, ...] = ()
+    """Samples that were due in this time and have not come."""
 
     @property
     def imu(self) -> tuple[ImuSample, ...]:
@@ -64,22 +68,35 @@ class SensorSuite:
 
     def __init__(self, vehicle: Vehicle, seed: int, check: Callable[[int, str], object]) -> None:
         self._models: dict[str, SensorModel] = {}
+        self.deliveries: dict[str, Delivery] = {}
+        """When the samples of each sensor come, and whether."""
         for name, section in vehicle.sensors.mounted.items():
             period = to_nanoseconds(1.0 / section.rate_hz)
             check(period, f"sensors.{name}.rate_hz")
             make = registry.load(registry.SENSORS, name)
             self._models[name] = make(vehicle, section, period, seed)
+            self.deliveries[name] = Delivery(name, section, seed)
         self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on a trajectory that is finite, and those of the encoders at its end."""
-        return SensorFrame(
-            {
-                name: checks.trust_all(model.sample(trajectory))
-                for name, model in self._models.items()
-            },
-            checks.trust(self._encoders.sample(trajectory.stamps[-1], q, q_dot, effort)),
-        )
+        first, now = trajectory.stamps[0], trajectory.stamps[-1]
+        samples: dict[str, tuple[Any, ...]] = {}
+        gaps: list[SensorGap] = []
+        for name, model in self._models.items():
+            delivery = self.deliveries[name]
+            come = delivery.deliver(checks.trust_all(model.sample(trajectory)), now)
+            due = _due(first, now, model.period)
+            if len(come) != len(due) or (come and come[0].stamp != due[0]):
+                gaps += delivery.gaps(due, come)
+            samples[name] = come
+        joints = self._encoders.sample(now, q, q_dot, effort)
+        return SensorFrame(samples, checks.trust(joints), tuple(gaps))
+
+
+def _due(first: int, last: int, period: int) -> range:
+    """Stamps from the first to the last at which a sensor of this period measures, ns."""
+    return range(-(-first // period) * period, last + 1, period)
 
 
 def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
