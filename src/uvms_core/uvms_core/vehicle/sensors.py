@@ -6,7 +6,7 @@ All sensors err in the same ways. What is measured becomes
 
 where `scale` and `bias` are constant in a run (or Gauss-Markov, where the section says so) and
 drawn from their std at its start, `walk` is a random walk, `noise` is white, and an outlier is
-added to a share of the samples. True vectors are first turned by the misalignment of the sensor's mount.
+added to a share of the samples. True vectors are first turned by the misalignment of the mount.
 The fields' units are those of what is measured. All errors but the noise and the biases that a
 section requires are none by default.
 """
