@@ -114,19 +114,6 @@ class GpsSample:
     covariance: Array  # (3, 3) m^2, north-east-down
 
 
-NEVER = -1
-"""In the place of a stamp, ns."""
-
-
-@dataclass(frozen=True)
-class SensorGap:
-    """A sample that was due and did not come: it is late, or lost."""
-
-    stamp: int  # that it was due at
-    sensor: str  # name of its section in the vehicle file
-    arrival: int = NEVER  # when it comes, ns
-
-
 @dataclass(frozen=True)
 class JointStates:
     """Joint encoders (or the true joints, where the topic says so)."""

@@ -1,11 +1,11 @@
 """When samples come, and whether: latency and drop-outs of one sensor."""
 
 from collections import deque
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Sequence
 from typing import Any
 
 from uvms_core.rng import generator
-from uvms_core.signals import NEVER, SensorGap, to_nanoseconds
+from uvms_core.signals import to_nanoseconds
 from uvms_core.vehicle.sensors import Sensor
 
 
@@ -23,7 +23,6 @@ class Delivery:
     """
 
     def __init__(self, name: str, section: Sensor, seed: int) -> None:
-        self._name = name
         self.latency = to_nanoseconds(section.latency_s)
         self.drop_out_rate = section.drop_out_rate
         self._rng = generator(seed, f"sensors/{name}/drop-outs")
@@ -43,11 +42,3 @@ class Delivery:
         while self._waiting and self._waiting[0][0] <= now:
             come.append(self._waiting.popleft()[1])
         return tuple(come)
-
-    def gaps(self, due: Iterable[int], come: Sequence[Any]) -> Iterator[SensorGap]:
-        """What was due at these stamps, ns, and is not among the samples that have come."""
-        there = {sample.stamp for sample in come}
-        on_their_way = {sample.stamp: arrival for arrival, sample in self._waiting}
-        for stamp in due:
-            if stamp not in there:
-                yield SensorGap(stamp, self._name, on_their_way.get(stamp, NEVER))

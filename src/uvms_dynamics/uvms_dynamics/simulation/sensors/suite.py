@@ -13,7 +13,6 @@ from uvms_core.signals import (
     ImuSample,
     JointStates,
     PressureSample,
-    SensorGap,
     to_nanoseconds,
 )
 from uvms_core.topic import Topic
@@ -30,8 +29,6 @@ class SensorFrame:
 
     samples: Mapping[str, tuple[Any, ...]]
     joints: JointStates
-    gaps: tuple[SensorGap, ...] = ()
-    """Samples that were due in this time and have not come."""
 
     @property
     def imu(self) -> tuple[ImuSample, ...]:
@@ -80,23 +77,14 @@ class SensorSuite:
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on a trajectory that is finite, and those of the encoders at its end."""
-        first, now = trajectory.stamps[0], trajectory.stamps[-1]
-        samples: dict[str, tuple[Any, ...]] = {}
-        gaps: list[SensorGap] = []
-        for name, model in self._models.items():
-            delivery = self.deliveries[name]
-            come = delivery.deliver(checks.trust_all(model.sample(trajectory)), now)
-            due = _due(first, now, model.period)
-            if len(come) != len(due) or (come and come[0].stamp != due[0]):
-                gaps += delivery.gaps(due, come)
-            samples[name] = come
-        joints = self._encoders.sample(now, q, q_dot, effort)
-        return SensorFrame(samples, checks.trust(joints), tuple(gaps))
-
-
-def _due(first: int, last: int, period: int) -> range:
-    """Stamps from the first to the last at which a sensor of this period measures, ns."""
-    return range(-(-first // period) * period, last + 1, period)
+        now = trajectory.stamps[-1]
+        return SensorFrame(
+            {
+                name: self.deliveries[name].deliver(checks.trust_all(model.sample(trajectory)), now)
+                for name, model in self._models.items()
+            },
+            checks.trust(self._encoders.sample(now, q, q_dot, effort)),
+        )
 
 
 def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
