@@ -64,16 +64,14 @@ class ThrustTable:
 
     def reachable(self, thrust: Array | float) -> Array:
         """The thrust nearest to a wanted one, N, that some command gives."""
-        t = np.asarray(thrust, dtype=float)
-        least_astern, least_ahead = self.least_n
-        t = np.where((t > 0.0) & (t < least_ahead), _nearer(t, least_ahead), t)
-        t = np.where((t < 0.0) & (t > least_astern), _nearer(t, least_astern), t)
-        return t.clip(self.astern[1][0], self.ahead[1][-1])
+        return nearest_reachable(thrust, *self.least_n).clip(self.astern[1][0], self.ahead[1][-1])
 
 
-def _nearer(thrust: Array, least: float) -> Array:
-    """Nothing or the least thrust, whichever is nearer."""
-    return np.where(np.abs(thrust) > 0.5 * abs(least), least, 0.0)
+def nearest_reachable(thrust: Array | float, astern: Array | float, ahead: Array | float) -> Array:
+    """The thrusts nearest to wanted ones, N, where the smallest but none are these."""
+    t = np.asarray(thrust, dtype=float)
+    t = np.where((t > 0.0) & (t < ahead), np.where(t > 0.5 * ahead, ahead, 0.0), t)
+    return np.where((t < 0.0) & (t > astern), np.where(t < 0.5 * astern, astern, 0.0), t)
 
 
 class ThrustCurve(Part):

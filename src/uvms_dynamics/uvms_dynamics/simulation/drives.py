@@ -4,6 +4,8 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.thrust_curve import nearest_reachable
+from uvms_core.vehicle.thrusters import Thruster
 
 
 class ThrusterDrives:
@@ -19,23 +21,23 @@ class ThrusterDrives:
     """
 
     def __init__(self, known: Vehicle, real: Vehicle) -> None:
-        self._pairs = [
-            (i, a, b)
-            for i, (a, b) in enumerate(zip(known.thrusters, real.thrusters, strict=True))
-            if not (a.is_ideal and b.is_ideal)
-        ]
+        pairs = list(zip(known.thrusters, real.thrusters, strict=True))
+        self._are_ideal = all(a.is_ideal and b.is_ideal for a, b in pairs)
+        self._least = np.array([thruster.least_n for thruster in known.thrusters]).T
+        self._other = [(i, a, b) for i, (a, b) in enumerate(pairs) if _curve(a) != _curve(b)]
 
     def realised(self, thrust: Array) -> Array:
         """Thrust (m,) N that the drives head for when these thrusts (m,) N are commanded.
 
-        Ideal drives have theirs cut at their limits by the kernel.
+        The kernel cuts them at the limits.
         """
-        if not self._pairs:
+        if self._are_ideal:
             return thrust
-        result = np.array(thrust, dtype=float)
-        for i, known, real in self._pairs:
-            same = known is real
-            result[i] = (
-                known.reachable(thrust[i]) if same else real.thrust(known.command(thrust[i]))
-            )
+        result = nearest_reachable(thrust, *self._least)
+        for i, known, real in self._other:
+            result[i] = real.thrust(known.command(thrust[i]))
         return result
+
+
+def _curve(thruster: Thruster) -> tuple[object, float]:
+    return thruster.curve, thruster.dead_zone
