@@ -38,7 +38,7 @@ class BoundedLeastSquares:
         authority = np.abs(self.matrix) @ self.limits
         self._row_scale = np.asarray(weights) / np.where(authority > 0.0, authority, 1.0)
         scaled = self._row_scale[:, None] * self.matrix * self.limits
-        m, self._regularisation = self.limits.size, regularisation
+        m = self.limits.size
         self._hessian = np.ascontiguousarray(scaled.T @ scaled + regularisation * np.eye(m))
         self._gradient_of_wrench = -scaled.T * self._row_scale
         self._max_steps = MAX_STEPS_PER_THRUSTER * max(m, 1)
@@ -58,11 +58,10 @@ class BoundedLeastSquares:
     def warm_start(self, value: tuple[Array, Array]) -> None:
         self._u, self._state = value
 
-    def cost(self, tau: Array, thrust: Array) -> float:
-        """What `solve` minimises, for thrusts (m,) N."""
+    def error(self, tau: Array, thrust: Array) -> float:
+        """Weighted squared error of the wrench of thrusts (m,) N, as a share of the authority."""
         missing = self._row_scale * (self.matrix @ thrust - tau)
-        share = thrust / self.limits
-        return float(missing @ missing + self._regularisation * (share @ share))
+        return float(missing @ missing)
 
     def solve(self, tau: Array, lower: Array | None = None, upper: Array | None = None) -> Array:
         """Thrusts (m,) in N for the wrench `tau` (6,); bounds default to the limits themselves."""
