@@ -19,7 +19,10 @@ WRENCHES = {
 }
 vehicle = load_vehicle()
 np.set_printoptions(precision=1, suppress=True, floatmode="fixed", linewidth=110)
-print("thrusters:", ", ".join(f"{t.name} {t.limit_n:g} N" for t in vehicle.thrusters))
+print(
+    "thrusters:",
+    ", ".join(f"{t.name} {t.astern_n:g} to {t.ahead_n:g} N" for t in vehicle.thrusters),
+)
 
 for preserve in (False, True):
     allocator = ThrustAllocator(vehicle, AllocatorConfig(preserve_direction=preserve))

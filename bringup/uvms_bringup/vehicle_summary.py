@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 
 from uvms_control.allocation.authority import axis_authority
+from uvms_control.vehicle_data import thruster_limits
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_core.vehicle.plausible.propulsion import AXES, axes_out_of_reach, terminal_speed
@@ -74,7 +75,7 @@ def _stowed(vehicle: Vehicle) -> Array:
 def _authority(vehicle: Vehicle) -> dict[str, list[float]]:
     """Greatest force, N, or moment, N m, along each axis alone, backwards and forwards."""
     matrix = thruster_matrix(vehicle)
-    limits = np.array([thruster.limit_n for thruster in vehicle.thrusters])
+    limits, _ = thruster_limits(vehicle)
     ahead, astern = axis_authority(matrix, limits), axis_authority(-matrix, limits)
     return {axis: [-float(astern[k]), float(ahead[k])] for k, axis in enumerate(AXES)}
 

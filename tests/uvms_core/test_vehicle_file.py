@@ -37,8 +37,19 @@ def test_counts_and_names():
 
 
 UNITS = "_(m|kg|n|s|deg|hz|pa|m3|m2|s2|nm|rad)(_s|_s2|_m2|_m3|_rad)?$"
-WITHOUT_UNIT = {"roll_added_inertia_fraction", "axial_added_mass_fraction", "scale_error"}
-WITHOUT_UNIT |= {"aspect_ratio", "drag_coefficient", "plate_drag_coefficient"}
+WITHOUT_UNIT = {
+    "roll_added_inertia_fraction",
+    "axial_added_mass_fraction",
+    "scale_error",
+    "gyro_scale_error",
+    "accelerometer_scale_error",
+    "dead_zone",
+    "drop_out_rate",
+    "outlier_rate",
+    "aspect_ratio",
+    "drag_coefficient",
+    "plate_drag_coefficient",
+}
 
 
 def scalar_fields(section):

@@ -12,6 +12,12 @@ def effort_limits(vehicle: Vehicle) -> Array:
 
 
 def thruster_limits(vehicle: Vehicle) -> tuple[Array, Array]:
-    """Largest thrust (m,) in N and largest rate of thrust (m,) in N/s."""
-    limits = np.array([thruster.limit_n for thruster in vehicle.thrusters])
-    return limits, np.array([thruster.slew_limit_n_s for thruster in vehicle.thrusters])
+    """Greatest thrusts (2, m), astern and ahead, in N and largest rate of thrust (m,) in N/s."""
+    parts = vehicle.thrusters
+    limits = np.array([[part.astern_n for part in parts], [part.ahead_n for part in parts]])
+    return limits, np.array([part.slew_limit_n_s for part in parts])
+
+
+def least_thrusts(vehicle: Vehicle) -> Array:
+    """Smallest thrusts but none (2, m), astern and ahead, in N; 0 where there is no gap."""
+    return np.array([part.least_n for part in vehicle.thrusters]).T

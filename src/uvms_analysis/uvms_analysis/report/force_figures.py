@@ -6,6 +6,7 @@ from matplotlib.figure import Figure
 
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.report import style
+from uvms_core.vehicle.thrusters import Thruster
 
 FORCE = ("X", "Y", "Z")
 MOMENT = ("K", "M", "N")
@@ -39,7 +40,7 @@ def thrusters(run: Analysis) -> Figure:
     figure = style.new_figure(0.8 + 1.55 * count)
     panels = list(figure.subplots(count, 2, sharex=True, squeeze=False).flat)
     for index, item in enumerate(items):
-        _thruster(panels[index], run, index, item.name, item.limit_n)
+        _thruster(panels[index], run, index, item)
     _missing(panels[len(items)], run)
     for axes in panels[len(items) + 1 :]:
         axes.set_axis_off()
@@ -48,7 +49,8 @@ def thrusters(run: Analysis) -> Figure:
     return figure
 
 
-def _thruster(axes: Axes, run: Analysis, index: int, name: str, limit: float) -> None:
+def _thruster(axes: Axes, run: Analysis, index: int, item: Thruster) -> None:
+    name, limit = item.name, item.greatest_n
     time = run.allocation.time
     thrust, at_limit = run.allocation.thrust[:, index], run.allocation.saturated[:, index]
     color = style.COLORS[index % len(style.COLORS)]
@@ -56,14 +58,20 @@ def _thruster(axes: Axes, run: Analysis, index: int, name: str, limit: float) ->
     axes.plot(time[at_limit], thrust[at_limit], ".", color="#b22222", markersize=2.0)
     height = min(1.15 * limit, max(1.3 * float(np.abs(thrust).max()), 0.1 * limit))
     axes.set_ylim(-height, height)
-    for bound in (-limit, limit):
+    for bound in (item.astern_n, item.ahead_n):
         if abs(bound) < height:
             axes.axhline(bound, **style.LIMIT)
-    axes.set_title(f"{name}  (±{limit:g} N)", fontsize=9)
+    axes.set_title(f"{name}  ({_range(item)} N)", fontsize=9)
     rms = np.sqrt(np.mean(thrust**2))
     text = f"rms {rms:.2g} N, at limit {100 * at_limit.mean():.1f} %"
     axes.text(1.0, 1.02, text, transform=axes.transAxes, ha="right", fontsize=8, color="#555555")
     axes.set_ylabel("N")
+
+
+def _range(item: Thruster) -> str:
+    if item.astern_n == -item.ahead_n:
+        return f"±{item.ahead_n:g}"
+    return f"{item.astern_n:g} to {item.ahead_n:g}"
 
 
 def _missing(axes: Axes, run: Analysis) -> None:

@@ -10,10 +10,11 @@ Where the arm disturbs the attitude, the first is the better choice; the second 
 import numpy as np
 
 from uvms_control.allocation.authority import axes_without_authority, axis_authority
-from uvms_control.allocation.least_squares import BoundedLeastSquares
+from uvms_control.allocation.gap import ThrustGap
+from uvms_control.allocation.least_squares import BoundedLeastSquares, box_of
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
-from uvms_control.vehicle_data import thruster_limits
+from uvms_control.vehicle_data import least_thrusts, thruster_limits
 from uvms_core import checks
 from uvms_core.signals import Allocation, Array, ThrusterCommand, Wrench, to_seconds
 from uvms_core.vehicle import Vehicle
@@ -28,31 +29,48 @@ EXACT = 1e-6
 
 
 class ThrustAllocator:
-    """min |W (B u - tau)|^2 + eps |u / u_max|^2 with |u| <= u_max, by an active-set method."""
+    """min |W (B u - tau)|^2 + eps |u / u_max|^2 within the limits, by an active-set method.
+
+    Thrusts that no drive can give, between none and its least, are left out (`ThrustGap`).
+    """
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`; any number of thrusters."""
         matrix = thruster_matrix(vehicle)
         limits, slew = thruster_limits(vehicle)
-        self._setup(matrix, limits, slew, config)
+        self._setup(matrix, limits, slew, config, least_thrusts(vehicle))
 
     @classmethod
     def from_layout(
-        cls, matrix: Array, limits: Array, slew: Array, config: AllocatorConfig
+        cls,
+        matrix: Array,
+        limits: Array,
+        slew: Array,
+        config: AllocatorConfig,
+        least: Array | None = None,
     ) -> "ThrustAllocator":
-        """From a thruster matrix (6, m) wrench per N, limits (m,) N and slew limits (m,) N/s."""
+        """From a thruster matrix (6, m) wrench per N, limits and slew limits (m,) N/s.
+
+        Limits are (m,) N in either direction, or (2, m) N astern (<= 0) and ahead (> 0); `least`
+        (2, m) N are the smallest thrusts but none, astern and ahead.
+        """
         allocator = cls.__new__(cls)
-        allocator._setup(matrix, limits, slew, config)
+        none = np.zeros((2, np.size(slew)))
+        allocator._setup(matrix, limits, slew, config, none if least is None else least)
         return allocator
 
-    def _setup(self, matrix: Array, limits: Array, slew: Array, config: AllocatorConfig) -> None:
-        _check_layout(matrix, limits, slew)
-        self.matrix, self.limits, self._slew = matrix, limits, slew
+    def _setup(
+        self, matrix: Array, limits: Array, slew: Array, config: AllocatorConfig, least: Array
+    ) -> None:
+        self.lower, self.upper = box_of(limits)
+        self.limits = np.maximum(-self.lower, self.upper)
+        _check_layout(matrix, self.limits, slew)
+        self.matrix, self._slew = matrix, slew
         self._config = config
-        self._solver = BoundedLeastSquares(
-            matrix, limits, np.array(config.weights), config.regularisation
-        )
-        self._row_scale = 1.0 / np.maximum(np.abs(matrix) @ limits, 1e-9)
+        box, weights = np.vstack([self.lower, self.upper]), np.array(config.weights)
+        self._solver = BoundedLeastSquares(matrix, box, weights, config.regularisation)
+        self._gap = ThrustGap(self._solver, least) if least.any() else None
+        self._row_scale = 1.0 / np.maximum(np.abs(matrix) @ self.limits, 1e-9)
         self.axes_without_authority = axes_without_authority(matrix)
         self.reset()
 
@@ -61,11 +79,13 @@ class ThrustAllocator:
         self._stamp: int | None = None
         self._thrust = np.zeros_like(self.limits)
         self._solver.reset()
+        if self._gap is not None:
+            self._gap.reset()
 
     @property
     def authority(self) -> Array:
         """Largest force or moment along each axis (6,) with the others at zero, N and N m."""
-        return axis_authority(self.matrix, self.limits)
+        return axis_authority(self.matrix, np.vstack([self.lower, self.upper]))
 
     @property
     def warning(self) -> str | None:
@@ -85,9 +105,12 @@ class ThrustAllocator:
         checks.check("wrench_command", wrench)
         tau = wrench.wrench
         lower, upper = self._bounds(wrench.stamp)
-        thrust = self._solver.solve(tau, lower, upper)
+        thrust, tau_wanted = self._solver.solve(tau, lower, upper), tau
         if self._config.preserve_direction and not self._exact(thrust, tau):
             thrust = self._scaled(tau, lower, upper, thrust)
+            tau_wanted = self.matrix @ thrust
+        if self._gap is not None:
+            thrust = self._gap.left_out(tau_wanted, thrust, lower, upper)
         self._stamp, self._thrust = wrench.stamp, thrust
         return self._result(wrench.stamp, tau, thrust, lower, upper)
 
@@ -95,24 +118,24 @@ class ThrustAllocator:
         """Zero thrust, for when the command is stale or missing."""
         self.reset()
         zero = np.zeros_like(self.limits)
-        return self._result(stamp, np.zeros(6), zero, -self.limits, self.limits)
+        return self._result(stamp, np.zeros(6), zero, self.lower, self.upper)
 
     def _result(
         self, stamp: int, tau: Array, thrust: Array, lower: Array, upper: Array
     ) -> tuple[ThrusterCommand, Allocation]:
         achieved = self.matrix @ thrust
         margin = SATURATION_MARGIN * self.limits
-        saturated = (thrust <= lower + margin) | (thrust >= upper - margin)
+        saturated = ((thrust <= lower + margin) & (self.lower < 0.0)) | (thrust >= upper - margin)
         command = ThrusterCommand(stamp, thrust)
         return command, Allocation(stamp, thrust, achieved, tau - achieved, saturated)
 
     def _bounds(self, stamp: int) -> tuple[Array, Array]:
         """Bounds (m,) N of this tick: the limits, and what the slew limit reaches from the last."""
         if not self._config.slew_aware or self._stamp is None:
-            return -self.limits, self.limits
+            return self.lower, self.upper
         reach = self._slew * max(to_seconds(stamp - self._stamp), 0.0)
-        lower = np.maximum(-self.limits, self._thrust - reach)
-        return lower, np.minimum(self.limits, self._thrust + reach)
+        lower = np.maximum(self.lower, self._thrust - reach)
+        return lower, np.minimum(self.upper, self._thrust + reach)
 
     def _exact(self, thrust: Array, tau: Array) -> bool:
         residual = self._row_scale * (self.matrix @ thrust - tau)

@@ -2,6 +2,7 @@
 
 import numpy as np
 
+from uvms_control.allocation.least_squares import box_of
 from uvms_core.signals import Array
 
 AXES = ("X", "Y", "Z", "K", "M", "N")
@@ -10,7 +11,10 @@ SPAN_TOLERANCE = 1e-9
 
 
 def axis_authority(matrix: Array, limits: Array) -> Array:
-    """Largest force or moment along each axis (6,), N and N m, with all other axes at zero."""
+    """Largest force or moment along each axis (6,), N and N m, with all other axes at zero.
+
+    `limits` (m,) N in either direction, or (2, m) N astern and ahead.
+    """
     return np.array([_pure_authority(matrix, limits, axis) for axis in range(6)])
 
 
@@ -18,7 +22,7 @@ def _pure_authority(matrix: Array, limits: Array, axis: int) -> float:
     from scipy.optimize import linprog  # half a second, only where the authority is asked for
 
     others = np.delete(matrix, axis, axis=0)
-    bounds = list(zip(-limits, limits, strict=True))
+    bounds = list(zip(*box_of(limits), strict=True))
     found = linprog(-matrix[axis], A_eq=others, b_eq=np.zeros(5), bounds=bounds, method="highs")
     return max(float(matrix[axis] @ found.x), 0.0) if found.success else 0.0
 

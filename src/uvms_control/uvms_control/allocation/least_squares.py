@@ -17,13 +17,24 @@ from uvms_core.signals import Array
 MAX_STEPS_PER_THRUSTER = 100
 
 
+def box_of(limits: Array) -> Array:
+    """Least and greatest thrusts (2, m), N, of limits (m,) in either direction, or those (2, m)."""
+    values = np.array(limits, dtype=np.float64)
+    return values if values.ndim == 2 else np.vstack([-values, values])
+
+
 class BoundedLeastSquares:
     """Solver for one thruster layout; it remembers the last solution as its warm start."""
 
     def __init__(self, matrix: Array, limits: Array, weights: Array, regularisation: float):
-        """`matrix` (6, m) wrench per newton, `limits` (m,) N > 0, `weights` (6,) >= 0."""
+        """`matrix` (6, m) wrench per newton, `weights` (6,) >= 0.
+
+        `limits` (m,) N > 0 in either direction, or (2, m) N astern (<= 0) and ahead (> 0).
+        """
         self.matrix = np.ascontiguousarray(matrix, dtype=np.float64)
-        self.limits = np.array(limits, dtype=np.float64)
+        self.lower, self.upper = box_of(limits)
+        self.limits = np.maximum(-self.lower, self.upper)
+        self._low, self._high = self.lower / self.limits, self.upper / self.limits
         authority = np.abs(self.matrix) @ self.limits
         self._row_scale = np.asarray(weights) / np.where(authority > 0.0, authority, 1.0)
         scaled = self._row_scale[:, None] * self.matrix * self.limits
@@ -38,10 +49,24 @@ class BoundedLeastSquares:
         self._u = np.zeros(self.limits.size)
         self._state = np.zeros(self.limits.size, dtype=np.int64)
 
+    @property
+    def warm_start(self) -> tuple[Array, Array]:
+        """Last solution and which bounds held it, copies; to go on from again."""
+        return self._u.copy(), self._state.copy()
+
+    @warm_start.setter
+    def warm_start(self, value: tuple[Array, Array]) -> None:
+        self._u, self._state = value
+
+    def error(self, tau: Array, thrust: Array) -> float:
+        """Weighted squared error of the wrench of thrusts (m,) N, as a share of the authority."""
+        missing = self._row_scale * (self.matrix @ thrust - tau)
+        return float(missing @ missing)
+
     def solve(self, tau: Array, lower: Array | None = None, upper: Array | None = None) -> Array:
         """Thrusts (m,) in N for the wrench `tau` (6,); bounds default to the limits themselves."""
-        low = -np.ones_like(self.limits) if lower is None else lower / self.limits
-        high = np.ones_like(self.limits) if upper is None else upper / self.limits
+        low = self._low if lower is None else lower / self.limits
+        high = self._high if upper is None else upper / self.limits
         steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
         if steps == TOO_MANY_STEPS:
             # A bad warm start only costs steps; when it fails from zero too, something is wrong.
@@ -54,8 +79,8 @@ class BoundedLeastSquares:
                 f"{self._max_steps} steps of the active-set method the optimum was not reached; "
                 "raise allocation.regularisation or bring allocation.weights closer together"
             )
-        bound_low = -self.limits if lower is None else lower
-        bound_high = self.limits if upper is None else upper
+        bound_low = self.lower if lower is None else lower
+        bound_high = self.upper if upper is None else upper
         return np.clip(self._u * self.limits, bound_low, bound_high)
 
     def _minimise(self, g: Array, low: Array, high: Array) -> int:

@@ -29,7 +29,7 @@ class Agility:
     Attributes:
         nu_dot: (6,) of the vehicle along and about its axes.
         q_ddot: (n,) of the joints.
-        thrust: (m,) limit of every thruster.
+        thrust: (m,) limit of every thruster, in the direction in which it has more.
         wrench: (6,) of all thrusters together along and about every axis.
     """
 
@@ -41,7 +41,7 @@ class Agility:
 
 def agility_of(vehicle: Vehicle) -> Agility:
     """The greatest accelerations of a vehicle."""
-    thrust = np.array([thruster.limit_n for thruster in vehicle.thrusters])
+    thrust = np.array([thruster.greatest_n for thruster in vehicle.thrusters])
     wrench = _authority(vehicle, thrust)
     return Agility(_nu_dot(vehicle, wrench), _q_ddot(vehicle), thrust, wrench)
 

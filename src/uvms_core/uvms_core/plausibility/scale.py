@@ -42,7 +42,7 @@ def scale_of(vehicle: Vehicle) -> Scale:
     hull, joints = vehicle.hull, vehicle.arm.joints
     gravity = vehicle.environment.gravity_m_s2
     mass = hull.mass_kg + sum(link.mass_kg for link in vehicle.arm.links)
-    force = sum(thruster.limit_n for thruster in vehicle.thrusters)
+    force = sum(thruster.greatest_n for thruster in vehicle.thrusters)
     size = _size(vehicle)
     load = force + OVERWEIGHT * mass * gravity
     linear = diagonal(hull.linear_damping), diagonal(hull.quadratic_damping)

@@ -15,6 +15,12 @@ class Environment(Part):
     )
     gravity_m_s2: float = Field(gt=0.0, description="acceleration of gravity, m/s^2")
     atmospheric_pressure_pa: float = Field(ge=0.0, description="air pressure at the surface, Pa")
+    seabed_depth_m: float | None = Field(
+        default=None,
+        gt=0.0,
+        description="depth of a flat seabed, m, which the DVL needs for its altitude; none: it is"
+        " always within the DVL's range",
+    )
     datum_latitude_deg: float = Field(
         ge=-89.0, le=89.0, description="latitude of the origin of map_ned, degrees"
     )

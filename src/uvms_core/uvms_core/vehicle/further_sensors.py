@@ -16,6 +16,18 @@ class Sensor(Part):
 
     rate_hz: float = Field(gt=0.0, description="samples per second")
     position_m: Vector3 = Field(description="lever arm: sensor in the body frame, m")
+    latency_s: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=10.0,
+        description="a sample comes this long after its own stamp, s; those of t = 0 come at once",
+    )
+    drop_out_rate: float = Field(
+        default=0.0,
+        ge=0.0,
+        le=1.0,
+        description="probability that a sample does not come; those of t = 0 always do",
+    )
 
 
 def section_class(name: str) -> type[Sensor] | None:

@@ -117,13 +117,15 @@ def _wet_bodies(vehicle: Vehicle, q: Array) -> list[tuple[float, Array]]:
     return result
 
 
-def wrench_reach(vehicle: Vehicle) -> Array:
-    """Greatest force and moment (6,) along each body axis, all thrusters helping, N and N m.
+def wrench_reach(vehicle: Vehicle) -> tuple[Array, Array]:
+    """Greatest force and moment (6,) backwards and forwards along each body axis, N and N m.
 
-    An upper bound: other axes get what they get.
+    All thrusters help, other axes get what they get; both are positive, and upper bounds.
     """
-    limits = np.array([thruster.limit_n for thruster in vehicle.thrusters])
-    return np.abs(thruster_columns(vehicle)) @ limits
+    columns = thruster_columns(vehicle)
+    ahead = columns * [thruster.ahead_n for thruster in vehicle.thrusters]
+    astern = columns * [thruster.astern_n for thruster in vehicle.thrusters]
+    return np.maximum(-ahead, -astern).sum(axis=1), np.maximum(ahead, astern).sum(axis=1)
 
 
 def thruster_columns(vehicle: Vehicle) -> Array:

@@ -6,25 +6,29 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.arithmetic import bounded
 from uvms_dynamics.kernels.jit import inner
+from uvms_dynamics.kernels.numba_internals.primitives import maximum, minimum
 from uvms_dynamics.model.thruster_matrix import thruster_matrix
 
 Thrusters = Array
-"""Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, 1 / time
-constant, slew limit."""
+"""Table (m, 10) of m thrusters for the kernels, SI: wrench per newton (6), greatest thrust astern
+(negative) and ahead, 1 / time constant, slew limit."""
 
-LIMIT, PER_TIME_CONSTANT, SLEW = np.arange(6, 9)
+ASTERN, AHEAD, PER_TIME_CONSTANT, SLEW = np.arange(6, 10)
 
 
 def build_thrusters(vehicle: Vehicle) -> Thrusters:
     """Thruster tables of a vehicle."""
     parts = vehicle.thrusters
-    drives = [[part.limit_n, 1.0 / part.time_constant_s, part.slew_limit_n_s] for part in parts]
+    drives = [
+        [part.astern_n, part.ahead_n, 1.0 / part.time_constant_s, part.slew_limit_n_s]
+        for part in parts
+    ]
     return np.hstack([thruster_matrix(vehicle).T, drives])
 
 
 @inner
 def thrust_rate(thrusters, i, thrust, command):
-    """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
-    limit, slew = thrusters[i, LIMIT], thrusters[i, SLEW]
-    target = bounded(command, limit)
+    """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, u within its limits."""
+    slew = thrusters[i, SLEW]
+    target = minimum(maximum(command, thrusters[i, ASTERN]), thrusters[i, AHEAD])
     return bounded((target - thrust) * thrusters[i, PER_TIME_CONSTANT], slew)

@@ -85,8 +85,9 @@ def _reach(vehicle: Vehicle) -> Iterator[Finding]:
 
 def _depth(vehicle: Vehicle) -> Iterator[Finding]:
     """Net weight against the thrust that can hold it."""
-    state, lift = buoyancy(vehicle), float(wrench_reach(vehicle)[2])
+    state, (up, down) = buoyancy(vehicle), wrench_reach(vehicle)
     weight = abs(state.net_weight_n)
+    lift = float(up[2] if state.net_weight_n > 0.0 else down[2])
     verb = "sinks" if state.net_weight_n > 0.0 else "rises"
     share = abs(state.mass_kg / state.displaced_kg - 1.0) if state.displaced_kg else 0.0
     text = (
@@ -112,7 +113,7 @@ HELD_PART = 0.5
 
 
 def _speed(vehicle: Vehicle) -> Iterator[Finding]:
-    push = wrench_reach(vehicle)
+    push = np.maximum(*wrench_reach(vehicle))
     linear, quadratic = axis_resistance(vehicle.hull, vehicle.environment.water_density_kg_m3)
     for k, (d, dd) in enumerate(zip(linear, quadratic, strict=True)):
         if push[k] > 0.0 and d == 0.0 and dd == 0.0:
@@ -142,7 +143,7 @@ def _response(vehicle: Vehicle) -> Iterator[Finding]:
     for number, thruster in enumerate(vehicle.thrusters):
         for field, time in (
             ("time_constant_s", thruster.time_constant_s),
-            ("slew_limit_n_s", thruster.limit_n / thruster.slew_limit_n_s),
+            ("slew_limit_n_s", thruster.greatest_n / thruster.slew_limit_n_s),
         ):
             if time > SLOWEST_DRIVE:
                 yield Finding(

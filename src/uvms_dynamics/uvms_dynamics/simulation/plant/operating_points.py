@@ -102,7 +102,7 @@ def _at_top_speed(vehicle: Vehicle, rest: Array) -> Iterator[tuple[str, Array]]:
     """At the speed along each axis to which all thrusters drive the hull alone."""
     density = vehicle.environment.water_density_kg_m3
     linear, quadratic = axis_resistance(vehicle.hull, density)
-    limits = [thruster.limit_n for thruster in vehicle.thrusters]
+    limits = [thruster.greatest_n for thruster in vehicle.thrusters]
     push = np.abs(thruster_matrix(vehicle)) @ limits
     for k, axis in enumerate(AXES):
         speed = _terminal_speed(push[k], float(linear[k]), float(quadratic[k]))

@@ -13,6 +13,7 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.layout import EFFORT
+from uvms_dynamics.simulation.drives import ThrusterDrives
 from uvms_dynamics.simulation.integrator import (
     JOINTS,
     advance,
@@ -50,6 +51,7 @@ class Plant:
         steps = steps_in(self._period, config, "control_period_s")
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
         self._system = make_system(vehicle, config.flow)
+        self._drives = ThrusterDrives(vehicle, vehicle)
         self._scratch = make_scratch(self._system)
         self._brakes = Brakes(vehicle, self._system, self._scratch)
         self._state = initial_state(vehicle, config)
@@ -102,7 +104,8 @@ class Plant:
         limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
         self._effort = np.clip(joints.effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
-        self._integrate(np.ascontiguousarray(thruster.thrust), self._states, self._rates)
+        realised = self._drives.realised(thruster.thrust)
+        self._integrate(np.ascontiguousarray(realised), self._states, self._rates)
         stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
         self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
 

@@ -1,17 +1,24 @@
 """Doppler velocity log."""
 
+import math
+
 import numpy as np
 
 from uvms_core.sensors import dvl
 from uvms_core.signals import Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
+from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_dynamics.simulation.sensors.errors import Errors, misalignment
 from uvms_dynamics.simulation.sensors.model import SensorModel
-from uvms_dynamics.simulation.sensors.mounting import SPEED, Trajectory
+from uvms_dynamics.simulation.sensors.mounting import QUATERNION, SPEED, VELOCITY, Trajectory
 
 
 class DvlSensor(SensorModel):
-    """Velocity over ground at the lever arm, body axes: (1 + s) (v + omega x r) + noise."""
+    """Velocity over ground at the lever arm, its own axes: (1 + s) R^T (v + omega x r) + errors.
+
+    Without bottom lock there is no sample: too near to the seabed or too far from it, or tilted.
+    """
 
     type = dvl.TYPE
 
@@ -20,10 +27,26 @@ class DvlSensor(SensorModel):
         self._dvl = section
         self._lever = np.array(section.position_m)
         self._scale = 1.0 + section.scale_error * self.rng.standard_normal()
+        self._mount = misalignment(seed, self.type.name, section.misalignment_deg)
+        self._seabed = vehicle.environment.seabed_depth_m
+        self._upright = math.cos(math.radians(section.max_tilt_deg or 180.0))
+        self._can_lose = self._seabed is not None or section.max_tilt_deg is not None
+        self._errors = Errors(
+            seed,
+            self.type.name,
+            3,
+            bias=section.bias_m_s,
+            walk=section.random_walk_m_s,
+            resolution=section.resolution_m_s,
+            outlier=section.outlier_m_s,
+            outlier_rate=section.outlier_rate,
+        )
 
     def sample(self, trajectory: Trajectory) -> tuple[DvlSample, ...]:
         """Samples that are due on the trajectory."""
         rows = trajectory.due(self.period)
+        if self._can_lose:
+            rows = [row for row in rows if self._has_bottom_lock(trajectory.states[row])]
         if not rows:
             return ()
         motion = trajectory.at_lever(rows, self._lever, 0.0)
@@ -33,6 +56,18 @@ class DvlSensor(SensorModel):
 
     def _read(self, stamp: int, velocity: Array) -> DvlSample:
         noise = self._dvl.noise_m_s * self.rng.standard_normal(3)
-        measured = self._scale * velocity + noise
+        if self._mount is not None:
+            velocity = self._mount.T @ velocity
+        measured = self._errors.completed(stamp, self._scale * velocity + noise)
         variance = self._dvl.noise_m_s**2 + (self._dvl.scale_error * measured) ** 2
         return DvlSample(stamp, measured, np.diag(variance))
+
+    def _has_bottom_lock(self, state: Array) -> bool:
+        down = quat_to_matrix(state[QUATERNION:VELOCITY])[2]
+        if down[2] < self._upright:
+            return False
+        if self._seabed is None:
+            return True
+        altitude = self._seabed - (state[2] + float(down @ self._lever))
+        most = self._dvl.max_altitude_m or math.inf
+        return max(self._dvl.min_altitude_m, 0.0) <= altitude <= most

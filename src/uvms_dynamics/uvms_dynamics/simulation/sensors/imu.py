@@ -8,7 +8,14 @@ from uvms_core.sensors import imu
 from uvms_core.signals import Array, ImuSample, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Imu
-from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
+from uvms_dynamics.kernels.rotations import (
+    matrix_to_quat,
+    quat_multiply,
+    quat_to_rpy,
+    rotation_vector_to_quat,
+    rpy_to_quat,
+)
+from uvms_dynamics.simulation.sensors.errors import Errors, misalignment
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import (
     FORCE,
@@ -37,6 +44,8 @@ class ImuSensor(SensorModel):
         self._bias_std = _errors(section, "bias")
         self._bias = self._bias_std * self.rng.standard_normal(9)
         self._keep = math.exp(-to_seconds(period) / section.bias_time_constant_s)
+        self._mount = misalignment(seed, self.type.name, section.misalignment_deg)
+        self._errors = _further_errors(section, seed, self.type.name)
         variance = self._noise**2 + self._bias_std**2
         self._covariances = tuple(np.diag(variance[k : k + 3]) for k in (0, 3, 6))
 
@@ -54,10 +63,64 @@ class ImuSensor(SensorModel):
         walk = math.sqrt(1.0 - self._keep**2)
         self._bias = self._keep * self._bias + walk * self._bias_std * draws[0]
         error = self._bias + self._noise * draws[1]
-        turned = quat_multiply(state[QUATERNION:VELOCITY], rotation_vector_to_quat(error[:3]))
-        return ImuSample(
-            stamp, turned, motion[TURN] + error[3:6], motion[FORCE] + error[6:], *self._covariances
-        )
+        if self._errors.adds:
+            error = error + self._errors.added(stamp)
+        quaternion, turn, force = self._in_its_axes(state[QUATERNION:VELOCITY], motion)
+        turned = quat_multiply(quaternion, rotation_vector_to_quat(error[:3]))
+        turn, force = turn + error[3:6], force + error[6:]
+        if self._errors.rounds:
+            turned, turn, force = self._rounded(turned, turn, force)
+        return ImuSample(stamp, turned, turn, force, *self._covariances)
+
+    def _in_its_axes(self, quaternion: Array, motion: Array) -> tuple[Array, Array, Array]:
+        """Attitude, turn rate and specific force about the unit's own axes, scaled as it does."""
+        turn, force = motion[TURN], motion[FORCE]
+        if self._mount is not None:
+            quaternion = quat_multiply(quaternion, matrix_to_quat(self._mount))
+            turn, force = self._mount.T @ turn, self._mount.T @ force
+        if not self._errors.scales:
+            return quaternion, turn, force
+        scaled = self._errors.scaled(np.concatenate([np.zeros(3), turn, force]))
+        return quaternion, scaled[3:6], scaled[6:]
+
+    def _rounded(self, turned: Array, turn: Array, force: Array) -> tuple[Array, Array, Array]:
+        """Roll, pitch and heading, rates and forces in steps of their resolution."""
+        values = np.concatenate([quat_to_rpy(turned), turn, force])
+        rounded = self._errors.rounded(values)
+        if (rounded[:3] != values[:3]).any():
+            turned = rpy_to_quat(*rounded[:3])
+        return turned, rounded[3:6], rounded[6:]
+
+
+def _further_errors(section: Imu, seed: int, name: str) -> Errors:
+    """Random walks, scales, steps and outliers of attitude, turn rate and specific force, SI."""
+
+    def of_all(attitude_deg: float, gyro_deg_s: float, accelerometer_m_s2: float) -> Array:
+        angles = np.radians([attitude_deg, gyro_deg_s])
+        return np.repeat([*angles, accelerometer_m_s2], 3)
+
+    return Errors(
+        seed,
+        name,
+        9,
+        walk=of_all(
+            section.attitude_random_walk_deg,
+            section.gyro_random_walk_deg_s,
+            section.accelerometer_random_walk_m_s2,
+        ),
+        scale=np.repeat([0.0, section.gyro_scale_error, section.accelerometer_scale_error], 3),
+        resolution=of_all(
+            section.attitude_resolution_deg,
+            section.gyro_resolution_deg_s,
+            section.accelerometer_resolution_m_s2,
+        ),
+        outlier=of_all(
+            section.attitude_outlier_deg,
+            section.gyro_outlier_deg_s,
+            section.accelerometer_outlier_m_s2,
+        ),
+        outlier_rate=section.outlier_rate,
+    )
 
 
 def _errors(section: Imu, kind: str) -> Array:

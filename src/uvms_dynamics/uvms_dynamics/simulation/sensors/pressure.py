@@ -7,6 +7,7 @@ from uvms_core.signals import PressureSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Pressure
 from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_dynamics.simulation.sensors.errors import Errors
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import QUATERNION, VELOCITY, Trajectory
 
@@ -28,6 +29,16 @@ class PressureSensor(SensorModel):
         self._surface = sea.atmospheric_pressure_pa
         self._gradient = sea.water_density_kg_m3 * sea.gravity_m_s2
         self._bias = section.bias_pa * self.rng.standard_normal()
+        self._errors = Errors(
+            seed,
+            self.type.name,
+            1,
+            walk=section.random_walk_pa,
+            scale=section.scale_error,
+            resolution=section.resolution_pa,
+            outlier=section.outlier_pa,
+            outlier_rate=section.outlier_rate,
+        )
         self._variance = section.noise_pa**2 + section.bias_pa**2
 
     def sample(self, trajectory: Trajectory) -> tuple[PressureSample, ...]:
@@ -40,5 +51,8 @@ class PressureSensor(SensorModel):
         place = state[:3] + rotation @ self._lever
         depth = float(place[2]) + trajectory.wave_head(row, place)
         error = self._bias + self._noise * self.rng.standard_normal()
-        absolute = self._surface + self._gradient * max(depth, 0.0) + error
-        return PressureSample(trajectory.stamps[row], absolute, self._variance)
+        stamp, true = trajectory.stamps[row], self._surface + self._gradient * max(depth, 0.0)
+        if not self._errors.exist:
+            return PressureSample(stamp, true + error, self._variance)
+        noisy = self._errors.scaled(np.array([true])) + error
+        return PressureSample(stamp, float(self._errors.completed(stamp, noisy)[0]), self._variance)

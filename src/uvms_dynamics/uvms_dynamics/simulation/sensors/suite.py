@@ -17,6 +17,7 @@ from uvms_core.signals import (
 )
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation.sensors.delivery import Delivery
 from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
@@ -64,21 +65,25 @@ class SensorSuite:
 
     def __init__(self, vehicle: Vehicle, seed: int, check: Callable[[int, str], object]) -> None:
         self._models: dict[str, SensorModel] = {}
+        self.deliveries: dict[str, Delivery] = {}
+        """When the samples of each sensor come, and whether."""
         for name, section in vehicle.sensors.mounted.items():
             period = to_nanoseconds(1.0 / section.rate_hz)
             check(period, f"sensors.{name}.rate_hz")
             make = registry.load(registry.SENSORS, name)
             self._models[name] = make(vehicle, section, period, seed)
+            self.deliveries[name] = Delivery(name, section, seed)
         self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on a trajectory that is finite, and those of the encoders at its end."""
+        now = trajectory.stamps[-1]
         return SensorFrame(
             {
-                name: checks.trust_all(model.sample(trajectory))
+                name: self.deliveries[name].deliver(checks.trust_all(model.sample(trajectory)), now)
                 for name, model in self._models.items()
             },
-            checks.trust(self._encoders.sample(trajectory.stamps[-1], q, q_dot, effort)),
+            checks.trust(self._encoders.sample(now, q, q_dot, effort)),
         )
 
 
