@@ -24,7 +24,7 @@ seeds = st.integers(0, 2**32 - 1)
 def test_propagation_equals_the_numpy_reference(seed, dt):
     state = random_state(seed)
     expected = numpy_reference.propagated(state, RATE, FORCE, dt, G, NOISE)
-    propagate(state, RATE, FORCE, dt, G, NOISE)
+    propagate(state, RATE - 0.05, RATE + 0.05, FORCE + 0.2, FORCE - 0.2, dt, G, *NOISE)
     for ours, theirs in zip(state, expected, strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-10, atol=1e-13)
 
@@ -52,7 +52,8 @@ def test_propagation_of_free_fall_and_of_rest():
     state = random_state(1)
     state.velocity[:] = 0.0
     start = state.position.copy()
-    propagate(state, np.zeros(3), state.accelerometer_bias.copy(), 0.5, G, NOISE)
+    still, none = state.accelerometer_bias.copy(), np.zeros(3)
+    propagate(state, none, none, still, still, 0.5, G, *NOISE)
     np.testing.assert_allclose(state.velocity, [0.0, 0.0, 0.5 * G], atol=1e-12)
     np.testing.assert_allclose(state.position - start, [0.0, 0.0, 0.125 * G], atol=1e-12)
 
@@ -61,8 +62,9 @@ def test_a_full_turn_brings_the_attitude_back():
     state = random_state(2)
     start = Rotation.from_quat(state.quaternion)
     state.gyro_bias[:] = 0.0
+    rate = np.array([0.0, 0.0, 2.0 * np.pi])
     for _ in range(100):
-        propagate(state, np.array([0.0, 0.0, 2.0 * np.pi]), FORCE, 0.01, G, NOISE)
+        propagate(state, rate, rate, FORCE, FORCE, 0.01, G, *NOISE)
     assert (Rotation.from_quat(state.quaternion) * start.inv()).magnitude() < 1e-12
 
 
@@ -121,7 +123,7 @@ def test_correction_returns_the_mahalanobis_distance_and_keeps_to_the_gate():
 def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
     state, rng = random_state(seed), np.random.default_rng(seed)
     for _ in range(300):
-        propagate(state, RATE, FORCE, 0.01, G, NOISE)
+        propagate(state, RATE, RATE, FORCE, FORCE, 0.01, G, *NOISE)
         imu.correct_attitude(state, state.quaternion.copy(), np.full(3, 1e-10), OPEN)
         dvl.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, OPEN)
         pressure.correct_depth(state, 1.0, 1e-8, LEVER, OPEN)

@@ -52,6 +52,7 @@ class ArmController:
                 f"arm effort limits: {self.effort_limit} N m, expected positive numbers"
             )
         self._config = config
+        self._limit = config.integral_limit * self.effort_limit
         self._law: SSurface | None = None  # for the period below, which rarely changes
         self._period = 0.0
         self.reset()
@@ -98,13 +99,13 @@ class ArmController:
         """
         law = self.law(dt)
         feedback = inertia @ law.acceleration(error, rate)
-        growth = self._config.integral_rate * law.stiffness * np.diag(inertia) * error * dt
+        growth = self._config.integral_rate * law.stiffness * inertia.diagonal() * error * dt
         wanted = feedback + feed_forward + self.integral
         self._integrate(growth, wanted)
-        return np.clip(wanted, -self.effort_limit, self.effort_limit)
+        return np.minimum(np.maximum(wanted, -self.effort_limit), self.effort_limit)
 
     def _integrate(self, growth: Array, wanted: Array) -> None:
         """Grow the integral within its limit, not further into a saturated torque (anti-windup)."""
         windup = (np.abs(wanted) >= self.effort_limit) & (growth * wanted > 0.0)
-        limit = self._config.integral_limit * self.effort_limit
-        self.integral = np.clip(self.integral + np.where(windup, 0.0, growth), -limit, limit)
+        moved = self.integral + growth * ~windup
+        self.integral = np.minimum(np.maximum(moved, -self._limit), self._limit)

@@ -8,6 +8,7 @@ from uvms_control.config import CompensationConfig
 from uvms_control.reference import ReferenceSample
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import end_effector, end_effector_jacobian
+from uvms_dynamics.kernels.jit import exact_kernel
 
 # Gauss-Newton steps: the first leaves 1 % or so to damping and curvature, the second nothing.
 ITERATIONS = 2
@@ -45,31 +46,50 @@ class EndEffectorCompensation:
         """
         if dt <= 0.0:
             return JointCorrection(self._angle, np.zeros_like(self._angle))
-        wanted = self._wanted(odometry, desired)
+        low, high = self._bounds(desired.q)
+        wanted = _needed(
+            self._model,
+            odometry.position,
+            odometry.quaternion,
+            desired.q,
+            desired.end_effector,
+            low,
+            high,
+            self._config.damping,
+        )
         gain = -np.expm1(-self._config.bandwidth * dt)
         largest = self._config.max_rate * dt
-        change = np.clip(gain * (wanted - self._angle), -largest, largest)
+        change = np.minimum(np.maximum(gain * (wanted - self._angle), -largest), largest)
         # The joint limits come before the rate bound where the reference runs into a limit.
-        moved = self._bounded(self._angle + change, desired.q)
+        moved = np.minimum(np.maximum(self._angle + change, low), high)
         rate = (moved - self._angle) / dt
         self._angle = moved
         return JointCorrection(moved, rate)
 
-    def _wanted(self, odometry: Odometry, desired: ReferenceSample) -> Array:
-        """Smallest correction (n,) rad that brings the tool to the path from this vehicle pose."""
-        correction = np.zeros_like(self._angle)
-        for _ in range(ITERATIONS):
-            q = desired.q + correction
-            tool, _ = end_effector(self._model, odometry.position, odometry.quaternion, q)
-            jacobian = end_effector_jacobian(self._model, odometry.quaternion, q)[:3, 6:]
-            missing = desired.end_effector - tool
-            damped = jacobian @ jacobian.T + self._config.damping**2 * np.eye(3)
-            correction = correction + jacobian.T @ np.linalg.solve(damped, missing)
-            correction = self._bounded(correction, desired.q)
-        return correction
-
-    def _bounded(self, correction: Array, q: Array) -> Array:
-        """Within the largest angle and the joint limits, but never away from a reference there."""
+    def _bounds(self, q: Array) -> tuple[Array, Array]:
+        """The largest angle and the joint limits, but never away from a reference there."""
         low = np.maximum(np.minimum(self._lower - q, 0.0), -self._config.max_angle)
         high = np.minimum(np.maximum(self._upper - q, 0.0), self._config.max_angle)
-        return np.clip(correction, low, high)
+        return low, high
+
+
+@exact_kernel
+def _needed(
+    model: Array,
+    position: Array,
+    quaternion: Array,
+    q: Array,
+    target: Array,
+    low: Array,
+    high: Array,
+    damping: float,
+) -> Array:
+    """Smallest correction (n,) rad of q, within its bounds, that brings the tool to the target."""
+    correction = np.zeros(q.shape[0])
+    for _ in range(ITERATIONS):
+        tool, _ = end_effector(model, position, quaternion, q + correction)
+        J = end_effector_jacobian(model, quaternion, q + correction)[:3, 6:].copy()
+        damped = J @ J.T + damping**2 * np.eye(3)
+        correction = correction + J.T @ np.linalg.solve(damped, target - tool)
+        correction = np.minimum(np.maximum(correction, low), high)
+    return correction

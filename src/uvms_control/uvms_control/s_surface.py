@@ -5,6 +5,7 @@ Here they are `k_error` and `k_rate`.
 """
 
 from dataclasses import dataclass
+from functools import cached_property
 from math import factorial
 
 import numpy as np
@@ -43,18 +44,22 @@ class SSurface:
 
     def control(self, error: Array, rate: Array) -> Array:
         """Eq. (19) without Delta-u, in the form of eq. (23): u = S(s) (k,), between -1 and 1."""
-        return np.tanh(0.5 * self.argument(error, rate))
+        return sigmoid(self.argument(error, rate))
 
     def acceleration(self, error: Array, rate: Array, delta_u: Array | float = 0.0) -> Array:
         """A (u + Delta-u) (k,), m/s^2 or rad/s^2."""
-        return self.amplitude * (self.control(error, rate) + delta_u)
+        return self.acceleration_of(self.argument(error, rate), delta_u)
 
-    @property
+    def acceleration_of(self, argument: Array, delta_u: Array | float = 0.0) -> Array:
+        """The same from what S is applied to."""
+        return self.amplitude * (sigmoid(argument) + delta_u)
+
+    @cached_property
     def stiffness(self) -> Array:
         """Slope against the error near zero (k,), 1/s^2: A k_error / (2 error_scale), eq. (26)."""
         return self.amplitude * self.k_error / (2.0 * self.error_scale)
 
-    @property
+    @cached_property
     def damping(self) -> Array:
         """Slope against the rate near zero (k,), 1/s: A k_rate / (2 rate_scale), eq. (26).
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from uvms_control.reference import ReferenceSample
 from uvms_core.signals import Array, Odometry
+from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -34,16 +35,31 @@ def tracking_error(odometry: Odometry, desired: ReferenceSample) -> TrackingErro
         acceleration  d/dt of [Rt v_d; Rt omega_d], seen in the body frame:
                   Rt nu_dot_d + [w x Rt v_d; w x Rt omega_d],  w = Rt omega_d - omega
     """
-    R_world_body = quat_to_matrix(odometry.quaternion)
-    turn = quat_multiply(quat_conjugate(odometry.quaternion), desired.quaternion)
-    R_body_desired = quat_to_matrix(turn)
-    position = R_world_body.T @ (desired.position - odometry.position)
-    v, omega = R_body_desired @ desired.nu[:3], R_body_desired @ desired.nu[3:]
-    slip = omega - odometry.nu[3:]
-    linear = R_body_desired @ desired.nu_dot[:3] + skew(slip) @ v
-    angular = R_body_desired @ desired.nu_dot[3:] + skew(slip) @ omega
+    at, to = odometry, desired
     return TrackingError(
-        error=np.concatenate((position, quat_to_rotation_vector(turn))),
-        rate=np.concatenate((v, omega)) - odometry.nu,
-        acceleration=np.concatenate((linear, angular)),
+        *_errors(at.position, at.quaternion, at.nu, to.position, to.quaternion, to.nu, to.nu_dot)
     )
+
+
+@exact_kernel
+def _errors(
+    position: Array,
+    quaternion: Array,
+    nu: Array,
+    desired_position: Array,
+    desired_quaternion: Array,
+    desired_nu: Array,
+    desired_nu_dot: Array,
+) -> tuple[Array, Array, Array]:
+    R_world_body = quat_to_matrix(quaternion)
+    turn = quat_multiply(quat_conjugate(quaternion), desired_quaternion)
+    R_body_desired = quat_to_matrix(turn)
+    error, rate, acceleration = np.empty(6), np.empty(6), np.empty(6)
+    error[:3] = R_world_body.T @ (desired_position - position)
+    error[3:] = quat_to_rotation_vector(turn)
+    v, omega = R_body_desired @ desired_nu[:3], R_body_desired @ desired_nu[3:]
+    rate[:3], rate[3:] = v - nu[:3], omega - nu[3:]
+    slip = skew(rate[3:])
+    acceleration[:3] = R_body_desired @ desired_nu_dot[:3] + slip @ v
+    acceleration[3:] = R_body_desired @ desired_nu_dot[3:] + slip @ omega
+    return error, rate, acceleration

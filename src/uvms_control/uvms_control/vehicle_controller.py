@@ -49,15 +49,15 @@ class VehicleController:
         included. `disturbance` F_dis (6,): what acts ON the vehicle (zero to leave it out);
         corrected from the print, where F_dis has the sign of a load to carry.
         """
-        self._integrate(tracking, dt)
-        feedback = self.law.acceleration(tracking.error, tracking.rate, self.delta_u)
+        argument = self.law.argument(tracking.error, tracking.rate)
+        self._integrate(tracking.error, argument, dt)
+        feedback = self.law.acceleration_of(argument, self.delta_u)
         acceleration = tracking.acceleration + feedback
         bias = hull_bias_wrench(self._model, odometry.nu)
         return inertia @ acceleration + bias - disturbance
 
-    def _integrate(self, tracking: TrackingError, dt: float) -> None:
+    def _integrate(self, error: Array, argument: Array, dt: float) -> None:
         """Integrate where the law is not saturated, within the limit (anti-windup)."""
-        near = np.abs(self.law.argument(tracking.error, tracking.rate)) < INTEGRATION_RANGE
-        change = self._k_integral * tracking.error / self.law.error_scale * dt
-        moved = self.delta_u + np.where(near, change, 0.0)
-        self.delta_u = np.clip(moved, -self._limit, self._limit)
+        change = self._k_integral * error / self.law.error_scale * dt
+        moved = self.delta_u + change * (np.abs(argument) < INTEGRATION_RANGE)
+        self.delta_u = np.minimum(np.maximum(moved, -self._limit), self._limit)

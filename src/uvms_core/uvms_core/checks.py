@@ -6,10 +6,11 @@ does not check it again: it looks only at stamps, and at sizes against its own v
 `dataclasses.replace` makes a new signal without the mark.
 """
 
-from collections.abc import Mapping, Sequence
-from functools import cache
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache, lru_cache
 from math import isfinite
-from typing import Any, TypeVar, get_type_hints
+from operator import attrgetter
+from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 
@@ -29,6 +30,7 @@ _MARK = "_checked"
 _set = object.__setattr__
 """Signals are frozen. To touch their `__dict__` would allocate one for each of them."""
 _FLOAT64 = np.dtype(np.float64)
+_DTYPE, _SHAPE = attrgetter("dtype"), attrgetter("shape")
 S = TypeVar("S")
 Names = Mapping[str, Sequence[str]]
 
@@ -62,6 +64,9 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     checked = getattr(signal, _MARK, False)
     if checked and not names:
         return
+    if not checked and not names and _is_certainly_good(signal):
+        trust(signal)
+        return
     kind: Any = type(signal)
     fields, sized = _fields(kind)
     if not checked:
@@ -79,6 +84,31 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
                 continue
             if not _fits(value.shape, rule, sizes):
                 raise _wrong_shape(f"{name}.{field}", value, rule, sizes, names)
+
+
+def well_formed(signal: Any) -> tuple[Array, ...] | None:
+    """The values of the fields that have a rule, if their form certainly is as it must be.
+
+    Types, shapes and unit lengths, that is; whether the numbers are finite is for the caller to
+    see. Quick; None where only `check` can tell.
+    """
+    layout = _layout(type(signal))
+    if layout is None:
+        return None
+    values: tuple[Array, ...] = layout.get(signal)
+    if list(map(type, values)) != layout.types or list(map(_DTYPE, values)) != layout.dtypes:
+        return None
+    if not _fit_together(type(signal), tuple(map(_SHAPE, values))):
+        return None
+    for index in layout.units:
+        if not is_unit(values[index].dot(values[index])):
+            return None
+    return values
+
+
+def checked_fields(kind: type) -> frozenset[str]:
+    """Names of the fields that `check` looks at."""
+    return frozenset(name for name, _ in _fields(kind)[0])
 
 
 def number(name: str, value: float) -> None:
@@ -125,6 +155,48 @@ def _fields(kind: type) -> tuple[tuple[tuple[str, Any], ...], tuple[tuple[str, S
         if isinstance(rule, Shape) and any(isinstance(size, str) for size in rule.sizes)
     ]
     return tuple(found), tuple(sized)
+
+
+class _Layout(NamedTuple):
+    """The fields of a signal that is made of arrays, for the quick test of all at once."""
+
+    get: Callable[[Any], tuple[Any, ...]]
+    types: list[type]
+    dtypes: list[Any]
+    units: list[int]  # which of them are vectors of unit length
+
+
+@cache
+def _layout(kind: type) -> _Layout | None:
+    """None where some of the fields are numbers, or have rules that take a closer look."""
+    fields, _ = _fields(kind)
+    rules = [rule for _, rule in fields]
+    if not fields or not all(isinstance(rule, Shape) for rule in rules):
+        return None
+    if any(rule.increasing or (rule.unit and len(rule.sizes) > 1) for rule in rules):
+        return None
+    names, count = [name for name, _ in fields], len(fields)
+    get: Any = attrgetter(*names) if count > 1 else lambda signal: (getattr(signal, names[0]),)
+    units = [index for index, rule in enumerate(rules) if rule.unit]
+    return _Layout(get, [np.ndarray] * count, [_FLOAT64] * count, units)
+
+
+@lru_cache(maxsize=256)
+def _fit_together(kind: type, shapes: tuple[tuple[int, ...], ...]) -> bool:
+    """Whether a signal's shapes are as its rules say; the few that occur are kept."""
+    sizes: dict[str, int] = {}
+    rules = (rule for _, rule in _fields(kind)[0])
+    return all(_fits(shape, rule, sizes) for shape, rule in zip(shapes, rules, strict=True))
+
+
+def _is_certainly_good(signal: Any) -> bool:
+    values = well_formed(signal)
+    if values is None:
+        return False
+    squared = 0.0
+    for value in values:
+        squared += value.dot(value) if value.ndim == 1 else np.vdot(value, value)
+    return isfinite(squared)
 
 
 def _is_rule(item: Any) -> bool:

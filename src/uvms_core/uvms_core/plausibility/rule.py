@@ -14,6 +14,7 @@ from typing import Any
 
 import numpy as np
 
+from uvms_core import checks
 from uvms_core.signals import Array
 
 Values = Array | float
@@ -75,6 +76,7 @@ class Rule:
         self.step_fault = step_fault
         self.extra_slack = extra_slack
         self.jumps = step_fault is not None
+        self._covered: dict[type, bool] = {}
         self.is_flat = all(bound.size for bound in bounds) and bool(bounds)
         if not self.is_flat:
             self._by_field = [
@@ -109,12 +111,24 @@ class Rule:
         """The values of a signal as one array."""
         values: Any = self._get(signal)
         if self._single:
-            return np.atleast_1d(values).ravel()
+            is_vector = type(values) is np.ndarray and values.ndim == 1  # the usual case
+            return values if is_vector else np.atleast_1d(values).ravel()
         if self._scalar:
             return np.array(values, dtype=np.float64)
         if self._straight:
             return np.concatenate(values)
         return np.concatenate([value.ravel() for value in values])
+
+    def covers(self, kind: type) -> bool:
+        """Whether it bounds, by one flat array, every value that a class of signals is checked for.
+
+        What is within bounds is finite too.
+        """
+        found = self._covered.get(kind)
+        if found is None:
+            bounded = {bound.field for bound in self.bounds}
+            found = self._covered[kind] = self.is_flat and checks.checked_fields(kind) <= bounded
+        return found
 
     @property
     def is_quick(self) -> bool:

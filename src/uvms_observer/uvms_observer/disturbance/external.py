@@ -21,6 +21,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
 
 class Moment(NamedTuple):
@@ -52,18 +53,30 @@ class ExternalWrenchObserver:
         return self.wrench
 
 
+@exact_kernel
 def unexplained_wrench(
     model: Model, dt: float, before: Moment, now: Moment, thrust: Array
 ) -> Array:
     """Mean wrench (6,) over the interval that the motion needs beyond the thrusters' wrench."""
-    middle = Moment(*(0.5 * (a + b) for a, b in zip(_same_sign(before, now), now, strict=True)))
-    quaternion = middle.quaternion / np.linalg.norm(middle.quaternion)
-    nu_dot, q_ddot = (now.nu - before.nu) / dt, (now.q_dot - before.q_dot) / dt
-    needed = inverse_dynamics(model, quaternion, middle.nu, nu_dot, middle.q, middle.q_dot, q_ddot)
+    quaternion = _mean(_same_sign(before.quaternion, now.quaternion), now.quaternion)
+    needed = inverse_dynamics(
+        model,
+        quaternion / np.sqrt(quaternion.dot(quaternion)),
+        _mean(before.nu, now.nu),
+        (now.nu - before.nu) / dt,
+        _mean(before.q, now.q),
+        _mean(before.q_dot, now.q_dot),
+        (now.q_dot - before.q_dot) / dt,
+    )
     return needed[:6] - thrust
 
 
-def _same_sign(moment: Moment, other: Moment) -> Moment:
+@exact_inner
+def _mean(a: Array, b: Array) -> Array:
+    return 0.5 * (a + b)
+
+
+@exact_inner
+def _same_sign(quaternion: Array, other: Array) -> Array:
     """The quaternion's sign that is nearer to the other's."""
-    nearer = float(moment.quaternion @ other.quaternion) >= 0.0
-    return moment if nearer else moment._replace(quaternion=-moment.quaternion)
+    return quaternion if quaternion.dot(other) >= 0.0 else -quaternion

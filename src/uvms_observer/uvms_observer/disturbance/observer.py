@@ -89,12 +89,15 @@ class DisturbanceObserver:
         self, dt: float, odometry: Odometry, joints: JointStates
     ) -> tuple[Array, Array]:
         """Vehicle (6,), body frame, and joints (n,)."""
-        measured = np.vstack((joints.position, joints.velocity))
+        measured = np.array((joints.position, joints.velocity))
         q_ddot = self._joints.step(dt, measured, self._encoder_variances)[2]
-        variances = odometry.twist_covariance.diagonal().reshape(2, 3).mean(axis=1)
-        linear = self._linear.step(dt, odometry.nu[None, :3], variances[:1])[1]
-        angular = self._angular.step(dt, odometry.nu[None, 3:], variances[1:])[1]
-        return np.concatenate((linear, angular)), q_ddot
+        a, b, c, d, e, f = odometry.twist_covariance.diagonal().tolist()
+        linear, angular = np.array(((a + b + c) / 3.0,)), np.array(((d + e + f) / 3.0,))
+        nu = odometry.nu.reshape(1, 6)
+        nu_dot = np.empty(6)
+        nu_dot[:3] = self._linear.step(dt, nu[:, :3], linear)[1]
+        nu_dot[3:] = self._angular.step(dt, nu[:, 3:], angular)[1]
+        return nu_dot, q_ddot
 
     def _check(self, odometry: Odometry, joints: JointStates, achieved: Wrench | None) -> None:
         if self._stamp is not None:

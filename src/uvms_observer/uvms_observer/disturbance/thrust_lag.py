@@ -24,11 +24,13 @@ class ThrustLag:
         self._inverse = np.linalg.pinv(self._matrix)
         self._tau = np.array([thruster.time_constant_s for thruster in vehicle.thrusters])
         self._thrust = np.zeros(len(self._tau))
+        self._dt, self._decay = 0.0, np.ones(len(self._tau))
 
     def step(self, dt: float, commanded: Array) -> Array:
         """Mean wrench (6,) over dt s with this wrench commanded."""
+        if dt != self._dt:
+            self._dt, self._decay = dt, np.exp(-dt / self._tau)
         command = self._inverse @ commanded
-        decay = np.exp(-dt / self._tau)
         start = self._thrust - command
-        self._thrust = command + start * decay
-        return self._matrix @ (command + start * (1.0 - decay) * self._tau / dt)
+        self._thrust = command + start * self._decay
+        return self._matrix @ (command + start * (1.0 - self._decay) * self._tau / dt)

@@ -15,6 +15,8 @@ from math import factorial
 import numpy as np
 
 from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_observer.navigation.arrays import transposed
 
 VARIANCE_FLOOR = 1e-18
 """Keeps the innovation invertible when perfect measurements are fed in."""
@@ -52,28 +54,36 @@ class TrackingFilter:
             measured: (m, channels), m <= k.
             variances: (m,) of their noise.
         """
-        count = len(variances)
-        noise = np.diag(np.maximum(variances, VARIANCE_FLOOR))
         if self._x is None:
-            return self._start(measured, noise)
+            self._x = self._start(measured, variances)
+            return self._x
         if dt != self._dt:
             self._dt, self._F = dt, _transition(self._order, dt)
             self._Q = self._density * _walk(self._order, dt)
-        x, P = self._F @ self._x, self._F @ self._P @ self._F.T + self._Q
-        K = P[:, :count] @ np.linalg.inv(P[:count, :count] + noise)
-        left = np.eye(self._order)
-        left[:, :count] -= K
-        P = left @ P @ left.T + K @ noise @ K.T
-        self._x, self._P = x + K @ (measured - x[:count]), 0.5 * (P + P.T)
+        self._x, self._P = _follow(self._x, self._P, self._F, self._Q, measured, variances)
         return self._x
 
-    def _start(self, measured: Array, noise: Array) -> Array:
-        count = len(noise)
-        self._x = np.zeros((self._order, measured.shape[1]))
-        self._x[:count] = measured
+    def _start(self, measured: Array, variances: Array) -> Array:
+        count = len(variances)
+        x = np.zeros((self._order, measured.shape[1]))
+        x[:count] = measured
         self._P = self._density * np.eye(self._order)
-        self._P[:count, :count] = noise
-        return self._x
+        self._P[:count, :count] = np.diag(np.maximum(variances, VARIANCE_FLOOR))
+        return x
+
+
+@exact_kernel
+def _follow(
+    x: Array, P: Array, F: Array, Q: Array, measured: Array, variances: Array
+) -> tuple[Array, Array]:
+    """The next estimate and its covariance, in the Joseph form."""
+    count, noise = variances.shape[0], np.diag(np.maximum(variances, VARIANCE_FLOOR))
+    x, P = F @ x, (F @ P) @ transposed(F) + Q
+    K = P[:, :count].copy() @ np.linalg.solve(P[:count, :count] + noise, np.eye(count))
+    left = np.eye(P.shape[0])
+    left[:, :count] -= K
+    P = (left @ P) @ transposed(left) + (K @ noise) @ transposed(K)
+    return x + K @ (measured - x[:count]), 0.5 * (P + P.T)
 
 
 def _transition(order: int, dt: float) -> Array:

@@ -83,16 +83,17 @@ class Estimator:
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
 
     def _carry(self, sample: ImuSample) -> None:
-        """Mean of the readings at both ends of the interval: second order in its length."""
+        """With the readings at both ends of the interval: second order in its length."""
         rate, force = sample.angular_velocity, sample.linear_acceleration
-        self._propagate(sample.stamp, 0.5 * (self._rate + rate), 0.5 * (self._force + force))
+        self._propagate(sample.stamp, rate, force)
         self._rate, self._force = rate, force
 
     def _propagate(self, stamp: int, rate: Array, force: Array) -> None:
+        """To the stamp, at which the inertial unit reads this."""
         if self.time is None or stamp <= self.time:
             return
-        dt, self.time = to_seconds(stamp - self.time), stamp
-        propagate(self.state, rate, force, dt, self._imu.gravity, self._imu.process)
+        dt, self.time, imu = to_seconds(stamp - self.time), stamp, self._imu
+        propagate(self.state, self._rate, rate, self._force, force, dt, imu.gravity, *imu.process)
 
     def _correct(self, reading: Reading) -> None:
         name = reading.name

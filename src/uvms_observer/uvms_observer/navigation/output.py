@@ -14,7 +14,7 @@ from uvms_observer.navigation.arrays import body_rate, transposed
 from uvms_observer.navigation.state import SIZE, NavigationState
 
 
-@exact_kernel
+@exact_inner
 def _pose(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Position (3,) of the body origin and pose covariance (6, 6), both about map_ned axes."""
     position = quat_to_matrix(state.quaternion) @ lever
@@ -30,7 +30,7 @@ def _pose(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     return position, covariance
 
 
-@exact_kernel
+@exact_inner
 def _twist(
     state: NavigationState, lever: Array, rate: Array, rate_variance: float
 ) -> tuple[Array, Array]:
@@ -70,10 +70,18 @@ def _symmetrize(matrix: Array) -> None:
             matrix[k, i] = mean
 
 
+@exact_kernel
+def _estimate(
+    state: NavigationState, lever: Array, rate: Array, rate_variance: float
+) -> tuple[Array, Array, Array, Array, Array]:
+    """The fields of an `Odometry` but the stamp, in its order."""
+    position, pose_covariance = _pose(state, lever)
+    nu, twist_covariance = _twist(state, lever, rate, rate_variance)
+    return position, state.quaternion.copy(), nu, pose_covariance, twist_covariance
+
+
 def odometry(
     stamp: int, state: NavigationState, lever: Array, rate: Array, rate_variance: float
 ) -> Odometry:
     """The estimate at the body origin; fresh arrays."""
-    position, pose_covariance = _pose(state, lever)
-    nu, twist_covariance = _twist(state, lever, rate, rate_variance)
-    return Odometry(stamp, position, state.quaternion.copy(), nu, pose_covariance, twist_covariance)
+    return Odometry(stamp, *_estimate(state, lever, rate, rate_variance))

@@ -37,34 +37,44 @@ class ProcessNoise(NamedTuple):
 @exact_kernel
 def propagate(
     state: NavigationState,
+    rate_before: Array,
     rate: Array,
+    force_before: Array,
     force: Array,
     dt: float,
     gravity: float,
-    noise: ProcessNoise,
+    gyro: float,
+    accelerometer: float,
+    bias_variance: Array,
+    bias_time_constant: float,
 ) -> None:
-    """Advance the state in place by dt.
+    """Advance the state in place by dt, with the mean of the readings at both ends.
+
+    The fields of a `ProcessNoise` come one by one: numba takes a named tuple apart as slowly as
+    the rest is done.
 
     Args:
-        rate: mean of the gyro's readings over the interval, (3,) rad/s, body.
-        force: mean of the accelerometer's readings, (3,) m/s^2, body.
+        rate_before, rate: the gyro's readings, (3,) rad/s, body.
+        force_before, force: the accelerometer's, (3,) m/s^2, body.
         dt: length of the interval, s.
         gravity: m/s^2, down.
-        noise: see `ProcessNoise`.
+        gyro, accelerometer, bias_variance, bias_time_constant: see `ProcessNoise`.
     """
     turn = np.empty(3)  # in the first half of the interval
     for i in range(3):
-        turn[i] = (rate[i] - state.gyro_bias[i]) * (0.5 * dt)
+        turn[i] = (0.5 * (rate_before[i] + rate[i]) - state.gyro_bias[i]) * (0.5 * dt)
     half = rotation_vector_to_quat(turn)
     middle = quat_multiply(state.quaternion, half)
     R = quat_to_matrix(middle)
     thrust = np.zeros(3)  # specific force in the world
     for i in range(3):
         for k in range(3):
-            thrust[i] += R[i, k] * (force[k] - state.accelerometer_bias[k])
-    phi = np.exp(-dt / noise.bias_time_constant)
+            mean = 0.5 * (force_before[k] + force[k])
+            thrust[i] += R[i, k] * (mean - state.accelerometer_bias[k])
+    phi = np.exp(-dt / bias_time_constant)
     _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity, phi)
-    _advance_covariance(state.covariance, R, thrust, dt, phi, noise)
+    _advance_covariance(state.covariance, R, thrust, dt, phi)
+    _add_noise(state.covariance, dt, phi, gyro, accelerometer, bias_variance)
 
 
 @exact_inner
@@ -89,10 +99,8 @@ def _advance_mean(
 
 
 @exact_inner
-def _advance_covariance(
-    P: Array, R: Array, thrust: Array, dt: float, phi: float, noise: ProcessNoise
-) -> None:
-    """P <- F P F^T + Q: F on every row of the symmetric P, then on every row of the transpose."""
+def _advance_covariance(P: Array, R: Array, thrust: Array, dt: float, phi: float) -> None:
+    """P <- F P F^T: F on every row of the symmetric P, then on every row of the transpose."""
     for i in range(SIZE):
         _transition(P[i], R, thrust, dt, phi)
     for i in range(SIZE):
@@ -105,19 +113,21 @@ def _advance_covariance(
             mean = 0.5 * (P[i, j] + P[j, i])
             P[i, j] = mean
             P[j, i] = mean
-    _add_noise(P, dt, phi, noise)
 
 
 @exact_inner
-def _add_noise(P: Array, dt: float, phi: float, noise: ProcessNoise) -> None:
+def _add_noise(
+    P: Array, dt: float, phi: float, gyro: float, accelerometer: float, bias_variance: Array
+) -> None:
+    """P <- P + Q."""
     for i in range(3):
-        P[i, i] += noise.accelerometer * dt**3 / 3.0
-        P[i, 3 + i] += 0.5 * noise.accelerometer * dt**2
-        P[3 + i, i] += 0.5 * noise.accelerometer * dt**2
-        P[3 + i, 3 + i] += noise.accelerometer * dt
-        P[6 + i, 6 + i] += noise.gyro * dt
+        P[i, i] += accelerometer * dt**3 / 3.0
+        P[i, 3 + i] += 0.5 * accelerometer * dt**2
+        P[3 + i, i] += 0.5 * accelerometer * dt**2
+        P[3 + i, 3 + i] += accelerometer * dt
+        P[6 + i, 6 + i] += gyro * dt
     for i in range(9):
-        P[9 + i, 9 + i] += (1.0 - phi * phi) * noise.bias_variance[i]
+        P[9 + i, 9 + i] += (1.0 - phi * phi) * bias_variance[i]
 
 
 @exact_inner

@@ -8,6 +8,7 @@ from uvms_core.sensors import imu
 from uvms_core.signals import Array, ImuSample, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Imu
+from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.kernels.rotations import (
     matrix_to_quat,
     quat_multiply,
@@ -53,20 +54,23 @@ class ImuSensor(SensorModel):
         """Samples that are due on the trajectory."""
         rows = trajectory.due(self.period)
         motion = trajectory.at_lever(rows, self._lever, self._gravity)
-        draws = self.rng.standard_normal((len(rows), 2, 9))
+        errors = self._draw_errors(len(rows))
         return tuple(
-            self._read(trajectory.stamps[row], trajectory.states[row], motion[k], draws[k])
+            self._read(trajectory.stamps[row], trajectory.states[row], motion[k], errors[k])
             for k, row in enumerate(rows)
         )
 
-    def _read(self, stamp: int, state: Array, motion: Array, draws: Array) -> ImuSample:
+    def _draw_errors(self, count: int) -> Array:
+        """Biases and noise (k, 9) of so many samples; the biases go on."""
+        draws = self.rng.standard_normal((count, 2, 9))
         walk = math.sqrt(1.0 - self._keep**2)
-        self._bias = self._keep * self._bias + walk * self._bias_std * draws[0]
-        error = self._bias + self._noise * draws[1]
+        return _add_biases(self._bias, self._keep, walk * self._bias_std, self._noise, draws)
+
+    def _read(self, stamp: int, state: Array, motion: Array, error: Array) -> ImuSample:
         if self._errors.adds:
             error = error + self._errors.added(stamp)
         quaternion, turn, force = self._in_its_axes(state[QUATERNION:VELOCITY], motion)
-        turned = quat_multiply(quaternion, rotation_vector_to_quat(error[:3]))
+        turned = _turned(quaternion, error[:3])
         turn, force = turn + error[3:6], force + error[6:]
         if self._errors.rounds:
             turned, turn, force = self._rounded(turned, turn, force)
@@ -121,6 +125,23 @@ def _further_errors(section: Imu, seed: int, name: str) -> Errors:
         ),
         outlier_rate=section.outlier_rate,
     )
+
+
+@exact_kernel
+def _add_biases(bias: Array, keep: float, walk: Array, noise: Array, draws: Array) -> Array:
+    """Errors (k, 9) of draws (k, 2, 9); the bias (9,) becomes that of the last one."""
+    errors = np.empty((draws.shape[0], 9))
+    for k in range(draws.shape[0]):
+        for i in range(9):
+            bias[i] = keep * bias[i] + walk[i] * draws[k, 0, i]
+            errors[k, i] = bias[i] + noise[i] * draws[k, 1, i]
+    return errors
+
+
+@exact_kernel
+def _turned(quaternion: Array, error: Array) -> Array:
+    """An attitude with an error about the body axes, a rotation vector (3,)."""
+    return quat_multiply(quaternion, rotation_vector_to_quat(error))
 
 
 def _errors(section: Imu, kind: str) -> Array:
