@@ -144,16 +144,30 @@ class Periodic(Input):
     def __init__(self, period: int) -> None:
         super().__init__()
         self._period = period
-        self._taken = -1
+        self._begin()
+
+    def _begin(self) -> None:
+        self._taken = self._newest = self._first = -1
+        self._gaps: dict[int, int] = {}
 
     def reset(self) -> None:
         """Forget everything: time starts over."""
         super().reset()
-        self._taken = -1
+        self._begin()
+
+    def push(self, stamp: int, value: Any) -> bool:
+        """Store a value, as any input does."""
+        self._newest = max(self._newest, stamp)
+        return super().push(stamp, value)
 
     def begin(self, stamp: int) -> None:
         """The node starts to listen at this stamp: what was due before is not waited for."""
         self._taken = max(self._taken, stamp - 1)
+        self._first = stamp
+
+    def skip(self, stamp: int, newest: int) -> None:
+        """At the tick of this stamp what is due does not come; `newest` is what has come by it."""
+        self._gaps[stamp] = newest
 
     def excuse(self, stamp: int) -> None:
         """The sample of this stamp came but cannot be used: the tick does without."""
@@ -161,6 +175,9 @@ class Periodic(Input):
 
     def complete(self, stamp: int) -> bool:
         """Whether the sample that is due at or before the stamp has arrived, or is excused."""
+        if self._gaps and stamp in self._gaps:
+            newest = self._gaps[stamp]
+            return newest < self._first or newest <= self._newest
         due = stamp - stamp % self._period
         return due <= self._taken or (bool(self._items) and self._items[-1][0] >= due)
 
@@ -175,6 +192,10 @@ class Periodic(Input):
             when, value = self._items.popleft()
             self._taken = max(self._taken, when)
             samples.append(value)
+        if self._gaps:
+            if stamp in self._gaps:
+                self._taken = max(self._taken, stamp)
+            self._gaps = {at: newest for at, newest in self._gaps.items() if at > stamp}
         return tuple(samples)
 
 
@@ -305,7 +326,25 @@ class TickGate:
         is_late = name == self._trigger and stamp % self._every == 0 and not self._is_new(stamp)
         if not self._inputs[name].push(stamp, value):
             self.duplicates += 1
-        return [] if is_late else self._release()
+        return [] if is_late and not self._open else self._release()
+
+    def skip(self, stamp: int, newest: Mapping[str, int]) -> list[Tick]:
+        """At a stamp some periodic inputs are not what is due; returns the ticks that go on.
+
+        Args:
+            stamp: of the tick, ns.
+            newest: by input, the stamp of the newest sample that has come, ns. Nothing later is
+                waited for; where the trigger is among them, the tick begins without it.
+        """
+        if not self._begun:
+            self._listen_from(stamp)
+        for name, last in newest.items():
+            item = self._inputs.get(name)
+            if isinstance(item, Periodic):
+                item.skip(stamp, last)
+        if self._trigger in newest and newest[self._trigger] < stamp and stamp % self._every == 0:
+            self._is_new(stamp)
+        return self._release()
 
     def _listen_from(self, stamp: int) -> None:
         self._begun = True

@@ -3,7 +3,7 @@
 State x (13 + 2n + m,): position (3,) and quaternion (4,) in the world, velocity nu_r (6,) relative
 to the water in the body frame, q (n,), q_dot (n,), thrust (m,). The current is constant and
 uniform, so the frame that moves with it is inertial: dynamics in nu_r, p_dot = R v_r + v_c. The
-wrench on the base is that of the thrusters and of the tether.
+wrench on the base is that of the thrusters, of the tether and of whoever pushes from outside.
 """
 
 from collections.abc import Sequence
@@ -34,12 +34,18 @@ POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 DEPTH = POSITION + 2
 
 
+NO_PUSH = np.zeros(0)
+PUSH = 12
+"""Length of a push: force (3,) N and moment (3,) N m in world axes, then the same in body axes."""
+
+
 class System(NamedTuple):
     """What the derivative of the state depends on besides state and commands."""
 
     model: Model
     thrusters: Thrusters
     current: Array  # (3,) velocity of the water in the world
+    push: Array = NO_PUSH  # (0,) or (12,) wrench at the body origin: in world axes, in body axes
 
 
 class Scratch(NamedTuple):
@@ -92,7 +98,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
     and row k of rates its derivative under these commands: thrust (m,) N, joint torque (n,) N m.
     `simulate` is built on it. Raises ValueError for arrays that do not fit.
     """
-    model, thrusters, current = system
+    model, thrusters, current, push = system
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
     work, stage, trial = scratch
     size = JOINTS + 2 * n + m
@@ -103,11 +109,25 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates):
     if rates.shape[0] != states.shape[0] or not step >= 0.0:
         raise ValueError("states and rates need as many rows, and step must be >= 0")
     for s in range(last + 1):
-        derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, stage, FIRST)
+        derivative(
+            model, thrusters, current, push, n, m, x, thrust_command, effort, work, stage, FIRST
+        )
         _record(x, stage, states, rates, s)
         if s < last:
             finish_step(
-                model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
+                model,
+                thrusters,
+                current,
+                push,
+                n,
+                m,
+                x,
+                thrust_command,
+                effort,
+                step,
+                work,
+                stage,
+                trial,
             )
 
 
@@ -121,7 +141,7 @@ def _record(x, stage, states, rates, s):
 
 @inner
 def finish_step(
-    model, thrusters, current, n, m, x, thrust_command, effort, step, work, stage, trial
+    model, thrusters, current, push, n, m, x, thrust_command, effort, step, work, stage, trial
 ):
     """Advance x by one step; row 0 of stage holds its derivative."""
     size = JOINTS + 2 * n + m
@@ -129,7 +149,9 @@ def finish_step(
         part = step if k == 3 else 0.5 * step
         for i in range(size):
             trial[i] = x[i] + part * stage[k - 1, i]
-        derivative(model, thrusters, current, n, m, trial, thrust_command, effort, work, stage, k)
+        derivative(
+            model, thrusters, current, push, n, m, trial, thrust_command, effort, work, stage, k
+        )
     for i in range(size):
         x[i] += step / 6.0 * (stage[0, i] + 2.0 * (stage[1, i] + stage[2, i]) + stage[3, i])
     a, b, c, d = _unit_quaternion(x)
@@ -137,7 +159,7 @@ def finish_step(
 
 
 @inner
-def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work, out, k):
+def derivative(model, thrusters, current, push, n, m, x, thrust_command, effort, work, out, k):
     """Row k of out: the derivative of the state x under these commands."""
     a, b, c, d = _unit_quaternion(x)
     nu_r = spatial_at(x, VELOCITY)
@@ -155,6 +177,8 @@ def derivative(model, thrusters, current, n, m, x, thrust_command, effort, work,
     down = down_in_body(a, b, c, d)
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
     wrench = plus(wrench, load_wrench(tether_load(model, n, x[DEPTH]), down))
+    if push.shape[0] == PUSH:
+        wrench = plus(wrench, _push_in_body(push, a, b, c, d))
     nu_r_dot = accelerate(model, work, n, down, nu_r, wrench)
     store_spatial(out, k, VELOCITY, nu_r_dot)
     for i in range(1, n + 1):
@@ -170,6 +194,28 @@ def _unit_quaternion(x):
     a, b, c, d = x[QUATERNION], x[QUATERNION + 1], x[QUATERNION + 2], x[QUATERNION + 3]
     scale = 1.0 / sqrt(a * a + b * b + c * c + d * d)
     return scale * a, scale * b, scale * c, scale * d
+
+
+@inner
+def _push_in_body(push, a, b, c, d):
+    """Body wrench of a push; quat = (a, b, c, d)."""
+    f = _into_body(push[0], push[1], push[2], a, b, c, d)
+    t = _into_body(push[3], push[4], push[5], a, b, c, d)
+    return (
+        f[0] + push[6],
+        f[1] + push[7],
+        f[2] + push[8],
+        t[0] + push[9],
+        t[1] + push[10],
+        t[2] + push[11],
+    )
+
+
+@inner
+def _into_body(u, v, w, a, b, c, d):
+    """R^T (u, v, w) = v - 2 e x (d v - e x v), e = (a, b, c)."""
+    t0, t1, t2 = d * u - (b * w - c * v), d * v - (c * u - a * w), d * w - (a * v - b * u)
+    return u - 2.0 * (b * t2 - c * t1), v - 2.0 * (c * t0 - a * t2), w - 2.0 * (a * t1 - b * t0)
 
 
 @inner

@@ -78,7 +78,7 @@ def _fitting(
 
 
 @kernel
-def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, steps):
+def _advance_groups(model, thrusters, current, push, x, thrust_command, effort, step, steps):
     n, m, count = effort.shape[1], thrust_command.shape[1], x.shape[0]
     lanes_x, lanes_trial = np.empty((x.shape[1], LANES)), np.empty((x.shape[1], LANES))
     lanes_thrust, lanes_effort = np.empty((m, LANES)), np.empty((n, LANES))
@@ -92,9 +92,23 @@ def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, 
         _take(thrust_command, first, lanes_thrust)
         _take(effort, first, lanes_effort)
         for _ in range(steps):
-            derivative(model, thrusters, current, n, m, state, thrust, torque, work, stage, FIRST)
+            derivative(
+                model, thrusters, current, push, n, m, state, thrust, torque, work, stage, FIRST
+            )
             finish_step(
-                model, thrusters, current, n, m, state, thrust, torque, step, work, stage, trial
+                model,
+                thrusters,
+                current,
+                push,
+                n,
+                m,
+                state,
+                thrust,
+                torque,
+                step,
+                work,
+                stage,
+                trial,
             )
         for lane in range(min(LANES, count - first)):
             for k in range(x.shape[1]):

@@ -9,22 +9,28 @@ from uvms_dynamics.kernels.jit import inner
 from uvms_dynamics.model.thruster_matrix import thruster_matrix
 
 Thrusters = Array
-"""Table (m, 9) of m thrusters for the kernels, SI: wrench per newton (6), limit, 1 / time
-constant, slew limit."""
+"""Table (m, 11) of m thrusters for the kernels, SI: wrench per newton (6), limit, 1 / time
+constant, slew limit, and what a fault makes of a command: share of it that is realised, and a
+thrust that does not depend on it."""
 
-LIMIT, PER_TIME_CONSTANT, SLEW = np.arange(6, 9)
+LIMIT, PER_TIME_CONSTANT, SLEW, SHARE, STUCK = np.arange(6, 11)
 
 
 def build_thrusters(vehicle: Vehicle) -> Thrusters:
     """Thruster tables of a vehicle."""
     parts = vehicle.thrusters
-    drives = [[part.limit_n, 1.0 / part.time_constant_s, part.slew_limit_n_s] for part in parts]
+    drives = [
+        [part.limit_n, 1.0 / part.time_constant_s, part.slew_limit_n_s, 1.0, 0.0] for part in parts
+    ]
     return np.hstack([thruster_matrix(vehicle).T, drives])
 
 
 @inner
 def thrust_rate(thrusters, i, thrust, command):
-    """Rate of change of thrust i, N/s: (u - T) / tau within the slew limit, |u| <= limit."""
+    """Rate of change of thrust i, N/s: (s u + u_0 - T) / tau within the slew limit, |u| <= limit.
+
+    A whole thruster has s = 1 and u_0 = 0, a stuck one s = 0.
+    """
     limit, slew = thrusters[i, LIMIT], thrusters[i, SLEW]
-    target = bounded(command, limit)
+    target = bounded(command, limit) * thrusters[i, SHARE] + thrusters[i, STUCK]
     return bounded((target - thrust) * thrusters[i, PER_TIME_CONSTANT], slew)

@@ -1,6 +1,6 @@
 """What a run of the plant starts from and how it is integrated."""
 
-from typing import Annotated
+from typing import Annotated, Any
 
 import numpy as np
 from pydantic import Field
@@ -19,6 +19,7 @@ from uvms_core.vehicle.postures import (
 )
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.simulation.plant.mismatch import Mismatch
 
 Turns = Annotated[float, Field(ge=-720.0, le=720.0)]
 """An attitude in degrees: more than two turns is a mistake."""
@@ -28,7 +29,7 @@ Speed = Annotated[float, Field(ge=-100.0, le=100.0)]
 
 
 class PlantConfig(StartConfig):
-    """Integration step, control period, start and current."""
+    """Integration step, control period, start, water, and how the plant differs from the model."""
 
     step_s: float = Field(0.005, gt=0.0, le=0.05, description="Runge-Kutta step, s")
     control_period_s: ControlPeriod = CONTROL_PERIOD_S
@@ -48,6 +49,16 @@ class PlantConfig(StartConfig):
     )
     current_ned_m_s: tuple[Speed, Speed, Speed] = Field(
         (0.0, 0.0, 0.0), description="velocity of the water in map_ned, m/s"
+    )
+    vehicle_overrides: dict[str, Any] = Field(
+        default_factory=dict,
+        description="values of the vehicle file that only the plant has, by dotted path, such as"
+        " `hull.cb_m: [0.0, 0.0024, 0.0]`; they come after `neutral` and `trim`, which do not see"
+        " them, and the nodes go on with the nominal vehicle",
+    )
+    mismatch: Mismatch = Field(
+        Mismatch(),
+        description="how far the plant's vehicle may be from the nominal one, drawn by the seed",
     )
 
 

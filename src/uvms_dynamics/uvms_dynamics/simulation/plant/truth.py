@@ -1,6 +1,6 @@
 """Ground truth of the plant: for logs and reports, never for a node of the loop."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -69,6 +69,15 @@ def true_disturbance(
         coupling_wrench(model, nu_r, nu_r_dot, q, q_dot, q_ddot),
         external,
     )
+
+
+def pushed(budget: DisturbanceBudget, state: Array, push: Array | None) -> DisturbanceBudget:
+    """The budget with a push (12,) of `integrator.PUSH` among the external wrench."""
+    if push is None:
+        return budget
+    rotation = quat_to_matrix(state[QUATERNION:VELOCITY]).T
+    turned = np.concatenate([rotation @ push[:3], rotation @ push[3:6]])
+    return replace(budget, external=budget.external + turned + push[6:])
 
 
 def _tether_wrench(model: Model, state: Array, n: int) -> Array:
