@@ -272,6 +272,10 @@ class UvmsNode(Node):
         """The name of a topic on the graph, with namespace and remappings."""
         return next(sub.topic_name for t, sub in self._receivers.items() if t.name == name)
 
+    def offer(self, topic: Topic) -> None:
+        """Be ready to `send` on a topic that is not among the outputs of the node's row."""
+        self._senders[topic] = self._sender(topic)
+
     def send(self, topic: Topic, signal: Any) -> None:
         """Publish a signal on its topic."""
         self._senders[topic](signal)

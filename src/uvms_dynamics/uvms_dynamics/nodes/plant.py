@@ -78,6 +78,7 @@ class PlantNode(UvmsNode):
 
     def __init__(self, **options) -> None:
         super().__init__(**options)
+        self.offer(topics.SENSOR_GAPS)
         self._plant = self._make_plant()
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
