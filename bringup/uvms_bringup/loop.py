@@ -27,6 +27,7 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import Plant, PlantTruth, SensorFrame
+from uvms_dynamics.simulation.events import status_values
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 from uvms_observer.parts import NavigationPart, ObserverPart
@@ -143,8 +144,9 @@ class Loop:
 
     def _happened(self) -> Iterator[Output]:
         """What has happened to the plant, as its node reports it."""
-        for event in self.plant.take_happened():
-            yield topics.DIAGNOSTICS, Status(event.stamp, topics.PLANT, values=event.values)
+        if happened := self.plant.take_happened():
+            values = status_values(happened)
+            yield topics.DIAGNOSTICS, Status(self.plant.stamp, topics.PLANT, values=values)
 
     def final_status(self, tick: LoopTick) -> Iterator[Status]:
         """What the plant and every part have to say at the last tick, as nodes do each second."""

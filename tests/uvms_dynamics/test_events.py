@@ -11,7 +11,7 @@ from uvms_dynamics.kernels import forward_dynamics, joint_passive_torque, mass_m
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.model import build_model
 from uvms_dynamics.simulation import Plant, PlantConfig, make_state, make_system
-from uvms_dynamics.simulation.events import check_events, event_from_text
+from uvms_dynamics.simulation.events import check_events, event_from_text, status_values
 from uvms_dynamics.simulation.events.joint import JointEvent
 from uvms_dynamics.simulation.events.thruster import ThrusterEvent
 from uvms_dynamics.simulation.events.wrench import Push, WrenchEvent
@@ -186,8 +186,12 @@ def test_an_event_between_two_ticks_happens_at_the_next_one_and_is_told():
     run(plant, 2)
     assert plant.take_happened() == []
     run(plant, 1)
-    (event,) = plant.take_happened()
-    assert event.values == {"event": f"thruster {MAIN}: effectiveness 0.5", "event_at_s": 0.15}
+    (event,) = happened = plant.take_happened()
+    assert event.asked_s == 0.12
+    assert status_values(happened) == {
+        "event_at_s": 0.15,
+        "event_1": f"thruster {MAIN}: effectiveness 0.5",
+    }
     assert plant.take_happened() == []
 
 

@@ -6,13 +6,14 @@ from typing import Any
 from uvms_analysis.log.read import RunLog
 from uvms_core import topics
 
-EVENT, AT = "event", "event_at_s"
-"""Names of the values."""
+EVENT, AT = "event_", "event_at_s"
+"""What the names of the values begin with, a number follows; and when it was, s."""
 
 
 def events_of(log: RunLog) -> Iterator[dict[str, Any]]:
     """Time and text of each event that began or ended, in order; raises LogError."""
     statuses = log.statuses(topics.PLANT) if log.has(topics.DIAGNOSTICS) else []
     for status in statuses:
-        if EVENT in status.values:
-            yield {"at_s": status.number(AT), "text": str(status.values[EVENT])}
+        for name, text in status.values.items():
+            if name.startswith(EVENT) and name != AT:
+                yield {"at_s": status.number(AT), "text": str(text)}

@@ -24,8 +24,9 @@ from uvms_core.signals import (
     to_nanoseconds,
     to_seconds,
 )
+from uvms_core.timeline import tolerance
 from uvms_dynamics.simulation import Plant, PlantConfig
-from uvms_dynamics.simulation.events import EventsConfig, event_from_text
+from uvms_dynamics.simulation.events import EventsConfig, event_from_text, status_values
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 from uvms_msgs.srv import ApplyEvent
@@ -254,9 +255,11 @@ class PlantNode(UvmsNode):
         self.report_each_second(stamp, **self._values)
 
     def _say_what_happened(self) -> None:
-        for event in self._plant.take_happened():
+        happened = self._plant.take_happened()
+        for event in happened:
             self.get_logger().info(f"t = {to_seconds(event.stamp):g} s: {event.text}")
-            self.report(event.stamp, **self._values, **event.values)
+        if happened:
+            self.report(self._plant.stamp, **self._values, **status_values(happened))
 
     def _warn_of_attitude(self, stamp: int, quaternion: Array) -> None:
         """At most once a second, whatever else the plant has to report."""
@@ -340,11 +343,14 @@ class PlantNode(UvmsNode):
     def _answer_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """Back to the start, and time to 0: the other nodes see that and restart.
 
-        A run that is recorded has one time only.
+        A run that is recorded has one time only, and of a short way back nobody would know.
         """
+        response.success, least = False, tolerance(self.period)
         if self.run_id:
-            response.success = False
             response.message = f"run {self.run_id} is being recorded; start another run instead"
+            return response
+        if 0 < self._plant.stamp <= least:
+            response.message = f"not before t = {to_seconds(least):g} s: the nodes would not see it"
             return response
         self._plant = self._make_plant()
         self._commands.clear()

@@ -15,13 +15,17 @@ from uvms_dynamics.simulation.events.kinds import (
     event_from_text,
 )
 from uvms_dynamics.simulation.events.load import Load, loaded
+from uvms_dynamics.simulation.events.schedule import Happened, Schedule, status_values
 
 __all__ = [
     "Event",
     "Events",
     "EventsConfig",
+    "Happened",
     "Load",
+    "Schedule",
     "check_events",
     "event_from_text",
     "loaded",
+    "status_values",
 ]

@@ -1,8 +1,9 @@
 """The events of a run in the order of time."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from heapq import heappop, heappush
+from typing import Any
 
 from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_dynamics.simulation.events.event import Effects, Event
@@ -22,10 +23,11 @@ class Happened:
     asked_s: float
     text: str
 
-    @property
-    def values(self) -> dict[str, float | str]:
-        """For /diagnostics."""
-        return {"event": self.text, "event_at_s": to_seconds(self.stamp)}
+
+def status_values(happened: Sequence[Happened]) -> dict[str, Any]:
+    """Values of a status that tells of events of one tick: `event_1`, `event_2`, ... and when."""
+    texts = {f"event_{k}": event.text for k, event in enumerate(happened, start=1)}
+    return {"event_at_s": to_seconds(happened[0].stamp), **texts}
 
 
 class Schedule:

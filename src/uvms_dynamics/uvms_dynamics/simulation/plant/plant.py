@@ -15,9 +15,8 @@ from uvms_core.signals import (
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.layout import EFFORT
 from uvms_dynamics.model.vehicle_table import build_model
-from uvms_dynamics.simulation.events import Event, Events, check_events
+from uvms_dynamics.simulation.events import Event, Events, Happened, Schedule, check_events
 from uvms_dynamics.simulation.events.kinds import check_payloads
-from uvms_dynamics.simulation.events.schedule import Happened, Schedule
 from uvms_dynamics.simulation.events.sensor import SensorEvent
 from uvms_dynamics.simulation.integrator import (
     JOINTS,

@@ -6,6 +6,7 @@ exp(h lambda). A step is refused where some mode that decays, or only swings, gr
 """
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,7 +17,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels import joint_passive_torque, mass_matrix
 from uvms_dynamics.model.vehicle_table import build_model
-from uvms_dynamics.simulation.events import Events, Load, loaded
+from uvms_dynamics.simulation.events import Event, Load, loaded
 from uvms_dynamics.simulation.events.payload import PayloadEvent
 from uvms_dynamics.simulation.integrator import (
     JOINTS,
@@ -77,7 +78,7 @@ def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
         )
 
 
-def check_plant(vehicle: Vehicle, config: PlantConfig, events: Events) -> None:
+def check_plant(vehicle: Vehicle, config: PlantConfig, events: Iterable[Event]) -> None:
     """As `check_step`, also with each payload of the events; ConfigError names the payload."""
     check_step(vehicle, config)
     for event in events:

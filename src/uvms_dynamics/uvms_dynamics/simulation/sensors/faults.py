@@ -106,7 +106,7 @@ class Altered(Fault):
 
     def change(self, sample: Any) -> Any:
         """A sample with other values."""
-        kind = type(sample)
+        kind: type = type(sample)
         names = [self._field] if self._field else list(rules_of(kind))
         values = {
             name: self.turned(getattr(sample, name))
@@ -163,7 +163,7 @@ class Added(Altered):
     @property
     def size(self) -> Array:
         """Of the error."""
-        return np.array(self.event.size, dtype=float)  # type: ignore[attr-defined]
+        return np.array(self.event.size, dtype=np.float64)  # type: ignore[attr-defined]
 
     @abstractmethod
     def error(self, count: int) -> Array:
