@@ -27,6 +27,7 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import Plant, PlantTruth, SensorFrame
+from uvms_dynamics.simulation.events import status_values
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
 from uvms_observer.parts import ObserverPart, navigation_part
@@ -114,7 +115,7 @@ class Loop:
     """Sensors, navigation, planner, observer, controller, allocator and plant, tick by tick."""
 
     def __init__(self, scenario: Scenario, vehicle: Vehicle) -> None:
-        self.plant = Plant(vehicle, scenario.plant, scenario.seed)
+        self.plant = Plant(vehicle, scenario.plant, scenario.seed, scenario.events)
         self.parts = make_parts(scenario, vehicle)
         self._process = InProcess(self.parts, Plausibility(vehicle))
         self._sensor_topics = in_order_of_publication(vehicle)
@@ -129,6 +130,7 @@ class Loop:
         """Everything that the graph computes at the plant's present stamp."""
         stamp, sensors, truth = self.plant.stamp, self.plant.sense(), self.plant.truth()
         outputs = list(plant_outputs(stamp, sensors, truth, self._sensor_topics))
+        outputs += self._happened()
         step_ms: dict[str, float] = {}
         with np.errstate(all="ignore"):  # what overflows is refused, and is no news
             self._process.admit_all(outputs[1:])  # the clock is a stamp, not a signal
@@ -139,6 +141,12 @@ class Loop:
                 outputs += own
         plan = self.parts[topics.MOTION_PLANNER].plan if topics.MOTION_PLANNER in step_ms else None  # type: ignore[attr-defined]
         return LoopTick(stamp, sensors, truth, outputs, step_ms, plan)
+
+    def _happened(self) -> Iterator[Output]:
+        """What has happened to the plant, as its node reports it."""
+        if happened := self.plant.take_happened():
+            values = status_values(happened)
+            yield topics.DIAGNOSTICS, Status(self.plant.stamp, topics.PLANT, values=values)
 
     def final_status(self, tick: LoopTick) -> Iterator[Status]:
         """What the plant and every part have to say at the last tick, as nodes do each second."""

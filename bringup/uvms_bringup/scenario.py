@@ -20,6 +20,7 @@ from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
 from uvms_core.vehicle.postures import STOWED
 from uvms_core.yaml_text import parse_yaml, read_yaml
 from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.events import Events
 from uvms_dynamics.simulation.plant.config import initial_joints_deg
 from uvms_observer import NavigationConfig, ObserverConfig
 from uvms_planner import PlannerConfig
@@ -66,6 +67,12 @@ class Scenario(Config):
         Goal(), description="what the planner is asked for; none: to hold the pose of the start"
     )
 
+    events: Events = Field(
+        (),
+        description="what happens to the plant during the run: payload, faults of thrusters,"
+        " sensors and joints, pushes from outside",
+    )
+
     @field_validator("scenario")
     @classmethod
     def _names_a_folder(cls, name: str) -> str:
@@ -102,7 +109,7 @@ class Scenario(Config):
             ScenarioError: there is no such vehicle, or the run cannot start with it.
         """
         vehicle = load_vehicle(vehicle_path(self.vehicle), self.vehicle_overrides)
-        check_start(vehicle, self.plant, self.planner)
+        check_start(vehicle, self.plant, self.planner, self.seed, self.events, self.duration_s)
         return vehicle
 
     def for_vehicle(self, vehicle: Vehicle) -> "Scenario":

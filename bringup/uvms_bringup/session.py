@@ -11,7 +11,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from uvms_analysis.log import run_end
+from uvms_analysis.log import plant_record, run_end
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.goal_file import path_to_json
 from uvms_analysis.log.memory import MemoryWriter
@@ -33,6 +33,7 @@ from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
 from uvms_core.yaml_text import dump_yaml
+from uvms_dynamics.simulation.plant.as_built import as_built
 from uvms_planner.errors import GoalRejected
 
 Goal = PathGoal | JointGoal | None
@@ -174,6 +175,10 @@ class Session:
     def _describe(self, log: LogWriter, config: str) -> None:
         log.attach("config.yaml", config, "application/yaml")
         log.attach(VEHICLE_FILE, dump_vehicle(self.vehicle), "application/yaml")
+        built = as_built(self.vehicle, self.scenario.plant, self.scenario.seed)
+        if built.differs:
+            log.attach(plant_record.VEHICLE_FILE, dump_vehicle(built.vehicle), "application/yaml")
+            log.metadata(plant_record.NAME, plant_record.to_metadata(built.to_data()))
         if isinstance(self.goal, PathGoal):
             log.attach("path.json", path_to_json(self.goal), "application/json")
         log.metadata(RUN, run_record(self.scenario, self.pace, self.command, self.holder.run_id))

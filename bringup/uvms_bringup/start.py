@@ -6,22 +6,37 @@ from uvms_core.sensors import INERTIAL
 from uvms_core.signals import to_nanoseconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.events import Events, check_events
+from uvms_dynamics.simulation.plant.as_built import as_built
 from uvms_dynamics.simulation.plant.config import initial_joints
-from uvms_dynamics.simulation.plant.stability import check_step
+from uvms_dynamics.simulation.plant.stability import check_plant
 from uvms_planner import PlannerConfig
 
 
-def check_start(vehicle: Vehicle, plant: PlantConfig, planner: PlannerConfig) -> None:
-    """Check vehicle, plant and planner against each other.
+def check_start(
+    vehicle: Vehicle,
+    plant: PlantConfig,
+    planner: PlannerConfig,
+    seed: int = 1,
+    events: Events = (),
+    duration_s: float | None = None,
+) -> None:
+    """Check vehicle, plant, planner and events against each other.
 
     Raises:
         ScenarioError: a period is not a multiple of the one that it depends on, the integration
-            step is unstable with the vehicle, or the joints cannot start where the plant says.
+            step is unstable with the vehicle as the plant has it or with a payload, the joints
+            cannot start where the plant says, or an event does not fit vehicle or run.
     """
     _check_periods(vehicle, plant, planner)
     try:
-        check_step(vehicle, plant)
-        initial_joints(vehicle, plant)
+        check_events(events, vehicle, duration_s)
+    except ConfigError as fault:
+        raise ScenarioError(str(fault)) from fault
+    try:
+        own = as_built(vehicle, plant, seed).vehicle
+        check_plant(own, plant, events)
+        initial_joints(own, plant)
     except ConfigError as fault:
         raise ScenarioError(f"plant.{fault}") from fault
 

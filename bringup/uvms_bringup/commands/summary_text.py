@@ -23,6 +23,7 @@ def summary_text(summary: Mapping[str, Any]) -> str:
         if values.get("max") is not None:
             rms, most = factor * values["rms"], factor * values["max"]
             lines.append(f"{words}: {rms:.3g} {unit} rms, {most:.3g} {unit} at most")
+    lines += [f"event: {each['at_s']:g} s: {each['text']}" for each in summary.get("events") or ()]
     lines += [f"incident: {text}" for text in summary.get("incidents") or ()]
     return "\n".join(lines)
 

@@ -9,6 +9,7 @@ from uvms_core import topics
 from uvms_core.config import Config
 from uvms_core.ros.parameters import flatten
 from uvms_core.yaml_text import dump_yaml
+from uvms_dynamics.simulation.events import EventsConfig
 
 
 def node_parameters(
@@ -23,7 +24,7 @@ def node_parameters(
         "control_period_s": scenario.plant.control_period_s,
     }
     own = {node: common | _own(scenario, node) for node in topics.NODES}
-    own[topics.PLANT] |= {
+    own[topics.PLANT] |= flatten(EventsConfig(events=scenario.events)) | {
         "realtime_factor": pace.factor,
         "duration_s": scenario.duration_s,
         "auto_start": False,

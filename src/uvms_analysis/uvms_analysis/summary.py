@@ -10,6 +10,8 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import check_log
 from uvms_analysis.counters import node_counters
 from uvms_analysis.errors import LogError, determine
+from uvms_analysis.happened import events_of
+from uvms_analysis.log import plant_record
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
 from uvms_analysis.outcome import judge, judged_by
@@ -88,6 +90,8 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
     summary["vehicle_warnings"] = figures.of(
         "vehicle_warnings", lambda: list(map(str, vehicle_warnings(log.vehicle)))
     )
+    summary["plant"] = figures.of("plant", lambda: plant_record.read(log))
+    summary["events"] = figures.of("events", lambda: list(events_of(log)))
     summary["check"] = check.summary()
     summary["missing"] = figures.missing
     return summary

@@ -4,10 +4,10 @@ A configuration is a frozen pydantic model. Files, `--set PATH=VALUE` and ROS pa
 from its fields, so that a gain has one name, one default and one description.
 """
 
+from collections.abc import Iterator
 from typing import get_args
 
 from pydantic import BaseModel, ConfigDict, ValidationError
-from pydantic.fields import FieldInfo
 
 from uvms_core.errors import ConfigError, UvmsError
 
@@ -48,7 +48,7 @@ def _follows_from_others(item, groups: set[tuple]) -> bool:
 
 
 def _explain_one(item, what: str, model: type[BaseModel]) -> str:
-    path = ".".join(str(part) for part in item["loc"]) or "(top)"
+    path = ".".join(str(part) for part in item["loc"] if not _is_tag(part)) or "(top)"
     line = f"{what}: {path}: {item['msg'].removeprefix('Value error, ')}"
     if item["type"] == "extra_forbidden":
         return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
@@ -69,16 +69,32 @@ def _echo(value) -> str | None:
     return text if len(text) <= _LONGEST_ECHO else None
 
 
+def _is_tag(part: object) -> bool:
+    """Whether a part of a place is the tag of one of several models, `<Model>`, and no field."""
+    return isinstance(part, str) and part.startswith("<")
+
+
 def _names_at(model: type[BaseModel], path: tuple) -> list[str]:
-    for part in path:
-        inner = model.field_model(str(part)) if issubclass(model, Config) else None
+    for k, part in enumerate(path):
+        tagged = [after for after in path[k + 1 : k + 3] if _is_tag(after)]
+        field = model.model_fields.get(str(part))
+        inner = None
+        if tagged and field is not None:
+            inner = next(
+                (m for m in models_in(field.annotation) if f"<{m.__name__}>" in tagged), None
+            )
+        elif issubclass(model, Config):
+            inner = model.field_model(str(part))
         model = inner or model
     return sorted(model.model_fields)
 
 
-def holds_sections(field: FieldInfo) -> bool:
-    """Whether a field holds sections: one, or a list of them."""
-    return _inner_model(field.annotation) is not None
+def models_in(annotation) -> Iterator[type[BaseModel]]:
+    """All models in an annotation such as `M`, `M | None` or `tuple[A | B, ...]`."""
+    if isinstance(annotation, type) and issubclass(annotation, BaseModel):
+        yield annotation
+    for argument in get_args(annotation):
+        yield from models_in(argument)
 
 
 def _inner_model(annotation) -> type[BaseModel] | None:

@@ -124,6 +124,22 @@ class JointStates:
     effort: ByJoint  # N m
 
 
+NOTHING_YET = -1
+"""The stamp of a sample that has not come, ns."""
+
+
+@dataclass(frozen=True)
+class SensorGaps:
+    """Sensors whose samples are not those that are due by their rates, at one control tick.
+
+    In lockstep navigation waits for what is due; it then waits for the newest sample that is here.
+    """
+
+    stamp: int
+    sensors: tuple[str, ...]  # names of the vehicle file
+    newest: tuple[int, ...]  # stamp of the newest sample that has come of each, ns
+
+
 @dataclass(frozen=True)
 class Odometry:
     """Pose and velocity of the vehicle, estimated or true."""

@@ -5,235 +5,16 @@ tick when the inputs that are due at its stamp are there. In lockstep that makes
 whatever the order in which messages arrive; in real time the trigger alone releases the tick, with
 the newest of the other inputs, so that a late node does not stop the others (it waits only for an
 input that it has never received). The gate uses neither ROS nor a clock.
-
-A sample that came but cannot be used is excused: the tick does not wait for it, and has the last
-good value instead, as long as that is not too old.
 """
 
-from abc import ABC, abstractmethod
-from bisect import insort
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass, is_dataclass, replace
-from operator import itemgetter
+from dataclasses import dataclass
 from typing import Any
 
-from uvms_core.checks import MAX_AGE_S, trust
-from uvms_core.signals import to_nanoseconds
+from uvms_core.inputs import KEEP, Covering, Input, Periodic, Previous, Same, held
 
-DEPTH = 256
-"""Samples an input keeps while it waits: 2.5 s of a 100 Hz sensor."""
-KEEP = to_nanoseconds(MAX_AGE_S)
-"""How long the last good value stands in for those that cannot be used, ns: as long as control
-works with any old state. It is also the longest gap that a part goes on after as if nothing had
-been; after a longer one it restarts: its derivatives, integrals and filters would take the gap
-for one long step."""
-_STAMP = itemgetter(0)
-
-
-class Input(ABC):
-    """One stamped input; the subclasses define when it is complete for a tick."""
-
-    def __init__(self) -> None:
-        self._items: deque[tuple[int, Any]] = deque(maxlen=DEPTH)
-        self._excused: list[int] = []
-
-    def reset(self) -> None:
-        """Forget everything: time starts over."""
-        self._items.clear()
-        self._excused.clear()
-
-    def push(self, stamp: int, value: Any) -> bool:
-        """Store a value; one that is out of order is put in its place. False for a repeated one."""
-        items = self._items
-        if not items or stamp > items[-1][0]:
-            items.append((stamp, value))
-            return True
-        if any(when == stamp for when, _ in items):
-            return False
-        ordered = list(items)
-        insort(ordered, (stamp, value), key=_STAMP)
-        items.clear()
-        items.extend(ordered)
-        return True
-
-    def excuse(self, stamp: int) -> None:
-        """The value of this stamp came but cannot be used; nobody needs to wait for it."""
-        self._excused = [*self._excused[-DEPTH:], stamp]
-
-    def missing(self, stamp: int) -> bool:
-        """Whether the tick lacks a value of this input, since it was excused and the last is old.
-
-        To be asked before `take`.
-        """
-        return False
-
-    def newest(self, stamp: int) -> Any:
-        """The newest value at or before the stamp, or None."""
-        if self._items and self._items[-1][0] <= stamp:  # the usual case, which is quick
-            return self._items[-1][1]
-        return next((value for when, value in reversed(self._items) if when <= stamp), None)
-
-    @abstractmethod
-    def complete(self, stamp: int) -> bool:
-        """Whether everything due at the stamp has arrived."""
-
-    def known(self, stamp: int) -> bool:
-        """Whether there is a value to use, even an old one."""
-        return self.newest(stamp) is not None
-
-    def take(self, stamp: int) -> Any:
-        """The value for the tick; older ones are dropped."""
-        items, value = self._items, self.newest(stamp)
-        while len(items) > 1 and items[1][0] <= stamp:
-            items.popleft()
-        return value
-
-
-class Same(Input):
-    """Arrives once per tick, with the stamp of the tick."""
-
-    def complete(self, stamp: int) -> bool:
-        """Whether the value of exactly this stamp has arrived, or is excused."""
-        items = self._items
-        if items and items[-1][0] == stamp:  # the usual case, which is quick
-            return True
-        return any(when == stamp for when, _ in items) or stamp in self._excused
-
-    def missing(self, stamp: int) -> bool:
-        """Whether the value is excused, and the one before it is too old to stand in."""
-        if stamp not in self._excused:
-            return False
-        return not any(stamp - KEEP <= when <= stamp for when, _ in self._items)
-
-    def take(self, stamp: int) -> Any:
-        """The value for the tick; where it is excused, the last good one as of this stamp."""
-        value = super().take(stamp)
-        if self._excused:
-            exact = any(when == stamp for when, _ in self._items)
-            if stamp in self._excused and not exact:
-                value = held(value, stamp)
-            self._excused = [each for each in self._excused if each > stamp]
-        return value
-
-
-class Previous(Input):
-    """Feedback from the previous tick, `period` nanoseconds ago."""
-
-    def __init__(self, period: int) -> None:
-        super().__init__()
-        self._period = period
-
-    def complete(self, stamp: int) -> bool:
-        """Whether the value of the previous tick has arrived, or is excused."""
-        due = stamp - self._period
-        return any(when == due for when, _ in self._items) or due in self._excused
-
-    def known(self, stamp: int) -> bool:
-        """Always: at the first tick there is none."""
-        return True
-
-    def take(self, stamp: int) -> Any:
-        """The newest value before the tick, None at the first."""
-        return super().take(stamp - 1)
-
-
-class Periodic(Input):
-    """A sensor at its own rate, due at multiples of `period`: all samples since the last tick."""
-
-    def __init__(self, period: int) -> None:
-        super().__init__()
-        self._period = period
-        self._taken = -1
-
-    def reset(self) -> None:
-        """Forget everything: time starts over."""
-        super().reset()
-        self._taken = -1
-
-    def begin(self, stamp: int) -> None:
-        """The node starts to listen at this stamp: what was due before is not waited for."""
-        self._taken = max(self._taken, stamp - 1)
-
-    def excuse(self, stamp: int) -> None:
-        """The sample of this stamp came but cannot be used: the tick does without."""
-        self._taken = max(self._taken, stamp)
-
-    def complete(self, stamp: int) -> bool:
-        """Whether the sample that is due at or before the stamp has arrived, or is excused."""
-        due = stamp - stamp % self._period
-        return due <= self._taken or (bool(self._items) and self._items[-1][0] >= due)
-
-    def known(self, stamp: int) -> bool:
-        """Always: a silent sensor does not stop the node."""
-        return True
-
-    def take(self, stamp: int) -> tuple[Any, ...]:
-        """All samples since the last tick, in order."""
-        samples = []
-        while self._items and self._items[0][0] <= stamp:
-            when, value = self._items.popleft()
-            self._taken = max(self._taken, when)
-            samples.append(value)
-        return tuple(samples)
-
-
-class Covering(Input):
-    """A value that holds for a time (`value.end`): the newest with stamp <= tick < end.
-
-    A value that cannot be used excuses the ticks that it would have covered, as many as the one
-    before it did: from then on the next one is due and waited for. That does not depend on the
-    order in which the topics arrive.
-    """
-
-    def __init__(self) -> None:
-        super().__init__()
-        self._span = KEEP  # where there was no good value before
-        self._excuses: list[tuple[int, int]] = []
-
-    def reset(self) -> None:
-        """Forget everything: time starts over."""
-        super().reset()
-        self._span = KEEP
-        self._excuses.clear()
-
-    def push(self, stamp: int, value: Any) -> bool:
-        """Store a value, as any input does."""
-        self._span = value.end - stamp
-        return super().push(stamp, value)
-
-    def excuse(self, stamp: int) -> None:
-        """The value of this stamp came but cannot be used."""
-        super().excuse(stamp)
-        self._excuses = [*self._excuses[-DEPTH:], (stamp, stamp + self._span)]
-
-    def complete(self, stamp: int) -> bool:
-        """Whether a value covers the stamp, or one that would is excused."""
-        if any(when <= stamp < value.end for when, value in self._items):
-            return True
-        return any(when <= stamp < end for when, end in self._excuses)
-
-    def missing(self, stamp: int) -> bool:
-        """Whether the last good value ended too long ago to stand in."""
-        return bool(self._excused) and not any(
-            when <= stamp < value.end + KEEP for when, value in self._items
-        )
-
-    def take(self, stamp: int) -> Any:
-        """The value for the tick; older ones are dropped."""
-        value = super().take(stamp)
-        if self._excused and value is not None and stamp < value.end:
-            self._excused = [each for each in self._excused if each > stamp]
-        if self._excuses:
-            self._excuses = [(when, end) for when, end in self._excuses if end > stamp]
-        return value
-
-
-def held(value: Any, stamp: int) -> Any:
-    """A checked signal as of a later stamp, as if it had not changed since."""
-    if is_dataclass(value) and not isinstance(value, type) and hasattr(value, "stamp"):
-        return trust(replace(value, stamp=stamp))
-    return value
+__all__ = ["KEEP", "Covering", "Input", "Periodic", "Previous", "Same", "Tick", "TickGate", "held"]
 
 
 @dataclass(frozen=True)
@@ -305,7 +86,25 @@ class TickGate:
         is_late = name == self._trigger and stamp % self._every == 0 and not self._is_new(stamp)
         if not self._inputs[name].push(stamp, value):
             self.duplicates += 1
-        return [] if is_late else self._release()
+        return [] if is_late and not self._open else self._release()
+
+    def skip(self, stamp: int, newest: Mapping[str, int]) -> list[Tick]:
+        """At a stamp some periodic inputs are not what is due; returns the ticks that go on.
+
+        Args:
+            stamp: of the tick, ns.
+            newest: by input, the stamp of the newest sample that has come, ns. Nothing later is
+                waited for; where the trigger is among them, the tick begins without it.
+        """
+        if not self._begun:
+            self._listen_from(stamp)
+        for name, last in newest.items():
+            item = self._inputs.get(name)
+            if isinstance(item, Periodic):
+                item.skip(stamp, last)
+        if self._trigger in newest and newest[self._trigger] < stamp and stamp % self._every == 0:
+            self._is_new(stamp)
+        return self._release()
 
     def _listen_from(self, stamp: int) -> None:
         self._begun = True

@@ -68,6 +68,11 @@ class Judged(NamedTuple):
 NOTHING = Judged()
 
 
+def tolerance(period: int) -> int:
+    """How far apart the stamps of a running system may be, ns; `period` of the control loop, ns."""
+    return max(to_nanoseconds(TOLERANCE_S), PERIODS * period)
+
+
 class Timeline:
     """Judges the stamps of a node's inputs.
 
@@ -77,7 +82,7 @@ class Timeline:
     """
 
     def __init__(self, period: int, plans: Iterable[str] = ()) -> None:
-        self._tolerance = max(to_nanoseconds(TOLERANCE_S), PERIODS * period)
+        self._tolerance = tolerance(period)
         self._plans = frozenset(plans)
         self._lead = max(to_nanoseconds(LEAD_S), PERIODS * period)
         self._newest: dict[str, int] = {}

@@ -7,6 +7,8 @@ from typing import Any
 Kind = type
 """The class of a signal; `Topic` has a field named `type`."""
 
+SENSORS = "sensors/"
+"""What the names of the sensors' topics begin with; the sensor's own name follows."""
 WORLD_FRAME = "map_ned"
 BODY_FRAME = "base_link_fsd"
 
@@ -49,6 +51,8 @@ class Topic:
         child_frame: its `child_frame_id`.
         qos: quality of service.
         conversion: of the signal, where `uvms_core.messages` does not know its class.
+        is_occasional: whether it is published only when there is something to say, and may have
+            no publisher at all.
     """
 
     name: str
@@ -58,6 +62,7 @@ class Topic:
     child_frame: str = ""
     qos: Qos = Qos()
     conversion: Conversion | None = None
+    is_occasional: bool = False
 
     @property
     def is_global(self) -> bool:

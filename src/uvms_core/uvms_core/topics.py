@@ -15,6 +15,7 @@ from uvms_core.messages import motion
 from uvms_core.topic import (
     BODY_FRAME,
     LATCHED,
+    SENSORS,
     WORLD_FRAME,
     Action,
     Conversion,
@@ -39,6 +40,7 @@ __all__ = [
     "PLANT",
     "RECORDED",
     "ROSOUT",
+    "SENSOR_GAPS",
     "THRUST_ALLOCATOR",
     "WORLD_FRAME",
     "Action",
@@ -116,6 +118,10 @@ ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String", qos=LATCHE
 DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", diagnostics.Status)
 ROSOUT = Topic("/rosout", "rcl_interfaces/msg/Log", qos=Qos(transient_local=True))
 """Of every node of ROS, not of the loop alone; recorded where there is a graph."""
+SENSOR_GAPS = Topic(
+    f"{SENSORS}gaps", "uvms_msgs/msg/SensorGaps", signals.SensorGaps, BODY_FRAME, is_occasional=True
+)
+"""Of the plant: samples that are missing or late. Nobody needs it who has a real vehicle."""
 RECORDED = Topic("recorded", "rosgraph_msgs/msg/Clock", int)
 """Of the run, not of the loop: up to here everything is in the log. The plant waits for it."""
 

@@ -1,14 +1,16 @@
 """How many messages a topic must have, from the vehicle file, the scenario and the span."""
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Any
 
 from uvms_analysis.check.contents import Contents
 from uvms_analysis.errors import LogError
+from uvms_analysis.log.read import RunLog
 from uvms_core import topics
 from uvms_core.sensors import sensor_types
 from uvms_core.signals import to_nanoseconds
+from uvms_core.topic import Topic
 
 LATCHED = (topics.TF_STATIC, topics.ROBOT_DESCRIPTION)
 
@@ -53,7 +55,21 @@ def rhythms(contents: Contents) -> Rhythms | None:
     found[topics.REFERENCE] = Rhythm(step, extra=1)
     found |= {topic: Rhythm(0, extra=1) for topic in LATCHED}
     found.pop(topics.DIAGNOSTICS)  # a node reports when it has something to say
+    for topic in _with_gaps(log):
+        found.pop(topic, None)
     return Rhythms(tick, {log.full_name(topic): rhythm for topic, rhythm in found.items()})
+
+
+def _with_gaps(log: RunLog) -> Iterator[Topic]:
+    """Topics of the sensors whose samples did not all come when they were due, as the plant says.
+
+    What was sent and not recorded is found out all the same.
+    """
+    gaps = log.signals(topics.SENSOR_GAPS) if log.has(topics.SENSOR_GAPS) else []
+    names = {name for each in gaps for name in each.sensors}
+    for sensor in sensor_types(log.vehicle):
+        if sensor.name in names:
+            yield sensor.topic
 
 
 def _period(config: Mapping[str, Any], path: str) -> int:

@@ -20,6 +20,7 @@ _CONVERSIONS: dict[type, Conversion] = {
     int: Conversion(general.clock_to, general.clock_from),
     Status: Conversion(general.status_to, general.status_from),
     signals.JointStates: Conversion(motion.joints_to, motion.joints_from),
+    signals.SensorGaps: Conversion(general.gaps_to, general.gaps_from),
     signals.Odometry: Conversion(motion.odometry_to, motion.odometry_from),
     signals.Wrench: Conversion(motion.wrench_to, motion.wrench_from),
     signals.DisturbanceBudget: Conversion(motion.budget_to, motion.budget_from),

@@ -7,6 +7,7 @@ from uvms_core.diagnostics import Status
 from uvms_core.errors import SignalError
 from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
+from uvms_core.signals import SensorGaps
 from uvms_core.topic import Topic
 
 
@@ -18,6 +19,26 @@ def clock_to(topic: Topic, stamp: int, names: Sequence[str]) -> Plain:
 def clock_from(topic: Topic, msg: Any, names: Sequence[str]) -> int:
     """From rosgraph_msgs/Clock."""
     return fields.stamp_of(msg.clock)
+
+
+def gaps_to(topic: Topic, gaps: SensorGaps, names: Sequence[str]) -> Plain:
+    """uvms_msgs/SensorGaps."""
+    return {
+        "header": parts.header(topic, gaps.stamp),
+        "sensors": list(gaps.sensors),
+        "newest": list(gaps.newest),
+    }
+
+
+def gaps_from(topic: Topic, msg: Any, names: Sequence[str]) -> SensorGaps:
+    """From uvms_msgs/SensorGaps."""
+    fields.check_frame(topic, msg.header)
+    sensors, newest = tuple(map(str, msg.sensors)), tuple(map(int, msg.newest))
+    if len(sensors) != len(newest):
+        raise SignalError(
+            f"{topic.name}: has {len(newest)} stamps for {len(sensors)} sensors; needs one each"
+        )
+    return SensorGaps(fields.stamp_of(msg.header.stamp), sensors, newest)
 
 
 def status_to(topic: Topic, status: Status, names: Sequence[str]) -> Plain:

@@ -26,7 +26,7 @@ from uvms_core.ros.parameters import declare_config
 from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
 from uvms_core.ros.watchdog import LOOK_S, Watchdog
 from uvms_core.signals import NANOSECONDS, to_nanoseconds
-from uvms_core.tick_gate import Covering, Input, Tick, TickGate
+from uvms_core.tick_gate import Covering, Input, Periodic, Tick, TickGate
 from uvms_core.timeline import Jump, Timeline
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.topics import Qos, Topic
@@ -132,7 +132,8 @@ class UvmsNode(Node):
         timeline = Timeline(self.period, plans)
         self._intake = Intake(gate, timeline, self.plausibility, self.on_time_jump)
         self._on_tick = on_tick
-        for topic in inputs:
+        waits = any(isinstance(rule, Periodic) for rule in inputs.values())
+        for topic in (*inputs, topics.SENSOR_GAPS) if waits else inputs:
             self._subscribe(topic, partial(self._receive, self._intake, topic))
 
     def listen(
@@ -271,6 +272,10 @@ class UvmsNode(Node):
         """The name of a topic on the graph, with namespace and remappings."""
         return next(sub.topic_name for t, sub in self._receivers.items() if t.name == name)
 
+    def offer(self, topic: Topic) -> None:
+        """Be ready to `send` on a topic that is not among the outputs of the node's row."""
+        self._senders[topic] = self._sender(topic)
+
     def send(self, topic: Topic, signal: Any) -> None:
         """Publish a signal on its topic."""
         self._senders[topic](signal)
@@ -346,7 +351,7 @@ class UvmsNode(Node):
         lacks = []
         for topic, subscription in self._receivers.items():
             there, found = self.count_publishers(topic.name), subscription.get_publisher_count()
-            if found < max(there, 1):
+            if found < max(there, 0 if topic.is_occasional else 1):
                 lacks.append(_lack(nobody_publishes(topic), there, found))
         for topic, publisher in self._outputs.items():
             there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()

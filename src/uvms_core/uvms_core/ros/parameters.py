@@ -1,11 +1,8 @@
-"""ROS parameters from a configuration's fields: name, type, default, bounds, description.
-
-A list of sections, which ROS does not know, is a list of texts: each section in JSON.
-"""
+"""ROS parameters from a configuration's fields: name, type, default, bounds, description."""
 
 import json
 from collections.abc import Iterator
-from typing import Any, TypeVar
+from typing import Any, TypeVar, get_origin
 
 import annotated_types
 from pydantic import BaseModel
@@ -14,9 +11,10 @@ from rcl_interfaces.msg import FloatingPointRange, IntegerRange, ParameterDescri
 from rclpy.node import Node
 from rclpy.parameter import Parameter
 
-from uvms_core.config import Config, holds_sections, validated
+from uvms_core.config import Config, models_in, validated
 from uvms_core.errors import ConfigError
 from uvms_core.plugin import PluginConfig
+from uvms_core.yaml_text import parse_yaml
 
 C = TypeVar("C", bound=Config)
 PARAMETERS = "parameters"
@@ -45,10 +43,11 @@ def declare_config(node: Node, model: type[C]) -> C:
 def flatten(config: Config) -> dict[str, Any]:
     """A configuration as ROS parameter names and values, for a parameter file.
 
-    Empty lists are left out: ROS cannot tell their type, and they are the defaults.
+    Empty lists are left out: ROS cannot tell their type, and they are the defaults. Maps, and lists
+    of sections, are JSON.
     """
     leaves = _leaves(_resolved(config))
-    return {".".join(path): _to_ros(value) for path, _, value in leaves if value != ()}
+    return {".".join(path): _to_ros(value, field) for path, field, value in leaves if value != ()}
 
 
 def describe(*models: type[Config]) -> str:
@@ -77,7 +76,7 @@ def _declare(
             _declare_field(node, name, default, field)
         value = node.get_parameter_or(name).value
         if value is not None:
-            _store(values, path, _sections(name, value) if holds_sections(field) else value)
+            _store(values, path, _from_text(name, value) if _is_text(field) else value)
 
 
 def _resolved(config: Config) -> Config:
@@ -85,12 +84,10 @@ def _resolved(config: Config) -> Config:
 
 
 def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
-    if default == ():
-        numbers, texts = Parameter.Type.DOUBLE_ARRAY, Parameter.Type.STRING_ARRAY
-        kind = texts if holds_sections(field) else numbers
-        node.declare_parameter(name, kind, _descriptor(field))
+    if default == () and not _is_text(field):
+        node.declare_parameter(name, Parameter.Type.DOUBLE_ARRAY, _descriptor(field))
     else:
-        node.declare_parameter(name, _to_ros(default), _descriptor(field))
+        node.declare_parameter(name, _to_ros(default, field), _descriptor(field))
 
 
 def _leaves(
@@ -104,20 +101,37 @@ def _leaves(
             yield (*prefix, name), field, value
 
 
-def _sections(name: str, texts: Any) -> list[Any]:
-    try:
-        return [json.loads(text) for text in texts]
-    except ValueError as fault:
-        raise ConfigError(f"{name}: must be sections in JSON, a text each; {fault}") from fault
+def _is_text(field: FieldInfo) -> bool:
+    """Whether the parameter is a text in YAML or JSON, since ROS has no type for the field.
+
+    Maps, and lists of sections.
+    """
+    annotation = field.annotation
+    return get_origin(annotation) is dict or (
+        get_origin(annotation) is tuple and next(models_in(annotation), None) is not None
+    )
 
 
-def _to_ros(value: Any) -> Any:
+def _from_text(name: str, value: Any) -> Any:
+    return parse_yaml(value, name, ConfigError) if isinstance(value, str) and value else ()
+
+
+def _to_ros(value: Any, field: FieldInfo) -> Any:
+    if _is_text(field):
+        return json.dumps(_plain(value))
     if isinstance(value, (tuple, list)):
-        if any(isinstance(item, BaseModel) for item in value):
-            return [item.model_dump_json() for item in value]
         numbers = all(isinstance(item, (int, float)) for item in value)
         return [float(item) if numbers else item for item in value]
     return value
+
+
+def _plain(value: Any) -> Any:
+    """Nested maps, lists and numbers, without what is at its default."""
+    if isinstance(value, BaseModel):
+        return value.model_dump(mode="json", exclude_unset=True)
+    if isinstance(value, dict):
+        return {key: _plain(each) for key, each in value.items()}
+    return [_plain(each) for each in value] if isinstance(value, tuple | list) else value
 
 
 def _descriptor(field: FieldInfo) -> ParameterDescriptor:

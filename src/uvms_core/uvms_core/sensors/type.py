@@ -4,7 +4,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from uvms_core.topic import Conversion, Topic
+from uvms_core.topic import SENSORS, Conversion, Topic
 from uvms_core.vehicle.sensors import Sensor
 
 
@@ -43,7 +43,7 @@ class SensorType:
     def topic(self) -> Topic:
         """Where its samples are published."""
         return Topic(
-            f"sensors/{self.name}",
+            f"{SENSORS}{self.name}",
             self.message,
             self.signal,
             self.frame or self.mounting_frame,

@@ -12,7 +12,7 @@ from uvms_core import diagnostics, topics
 from uvms_core.attitude import attitude_status
 from uvms_core.checks import MAX_AGE_S
 from uvms_core.config import Config
-from uvms_core.errors import StampError
+from uvms_core.errors import ConfigError, StampError
 from uvms_core.ros.endpoints import Endpoint, Publishers
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import DIAGNOSTICS_PERIOD, UvmsNode
@@ -24,9 +24,12 @@ from uvms_core.signals import (
     to_nanoseconds,
     to_seconds,
 )
+from uvms_core.timeline import tolerance
 from uvms_dynamics.simulation import Plant, PlantConfig
+from uvms_dynamics.simulation.events import EventsConfig, event_from_text, status_values
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication
+from uvms_msgs.srv import ApplyEvent
 
 COMMANDS = (topics.THRUSTER_COMMAND.name, topics.JOINT_COMMAND.name)
 POLL = 0.05
@@ -72,14 +75,12 @@ class PlantNode(UvmsNode):
     """
 
     role = topics.PLANT
-    configurations = (
-        PaceConfig,
-        PlantConfig,
-    )
+    configurations = (PaceConfig, PlantConfig, EventsConfig)
 
     def __init__(self, **options) -> None:
         super().__init__(**options)
-        self._plant = Plant(self.vehicle, self.config(PlantConfig), self.seed)
+        self.offer(topics.SENSOR_GAPS)
+        self._plant = self._make_plant()
         self._pace = self.config(PaceConfig)
         self._end = to_nanoseconds(self._pace.duration_s) or None
         self._commands: dict[str, Any] = {}
@@ -98,8 +99,7 @@ class PlantNode(UvmsNode):
         self._rivals = Publishers(self, {topic.name: 1 for topic in self.graph[self.role].outputs})
         self._rivals.know()
         self._look = time.monotonic() + LOOK
-        self._recorded = 0
-        self._held = False
+        self._recorded, self._held = 0, False
         self._tilt_reported = -DIAGNOSTICS_PERIOD
         if self.lockstep and self._pace.recorder_window:
             self.listen(topics.RECORDED, self._take_recorded)
@@ -108,6 +108,13 @@ class PlantNode(UvmsNode):
             self.listen(topic, partial(self._take, name), partial(self._take_refused, name))
         self.create_service(Trigger, "start", self._answer_start)
         self.create_service(SetBool, "pause", self._answer_pause)
+        self.create_service(Trigger, "reset", self._answer_reset)
+        self.create_service(ApplyEvent, "apply_event", self._answer_event)
+
+    def _make_plant(self) -> Plant:
+        """The plant at its start, with the events of the parameters before it."""
+        events = self.config(EventsConfig).events
+        return Plant(self.vehicle, self.config(PlantConfig), self.seed, events)
 
     def deadline(self) -> float | None:
         """When the plant is to be woken, monotonic wall time in s."""
@@ -243,8 +250,16 @@ class PlantNode(UvmsNode):
         stamp, sensors, truth = self._plant.stamp, self._plant.sense(), self._plant.truth()
         for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
             self.send(topic, signal)
+        self._say_what_happened()
         self._warn_of_attitude(stamp, truth.odometry.quaternion)
         self.report_each_second(stamp, **self._values)
+
+    def _say_what_happened(self) -> None:
+        happened = self._plant.take_happened()
+        for event in happened:
+            self.get_logger().info(f"t = {to_seconds(event.stamp):g} s: {event.text}")
+        if happened:
+            self.report(self._plant.stamp, **self._values, **status_values(happened))
 
     def _warn_of_attitude(self, stamp: int, quaternion: Array) -> None:
         """At most once a second, whatever else the plant has to report."""
@@ -312,6 +327,39 @@ class PlantNode(UvmsNode):
             return response
         response.message = "started"
         self._start()
+        return response
+
+    def _answer_event(self, request: ApplyEvent.Request, response: ApplyEvent.Response):
+        try:
+            event = event_from_text(request.event, self._plant.stamp)
+            response.message = self._plant.apply(event)
+        except ConfigError as fault:
+            response.success, response.message = False, str(fault)
+            return response
+        response.success = True
+        self._say_what_happened()
+        return response
+
+    def _answer_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Back to the start, and time to 0: the other nodes see that and restart.
+
+        A run that is recorded has one time only, and of a short way back nobody would know.
+        """
+        response.success, least = False, tolerance(self.period)
+        if self.run_id:
+            response.message = f"run {self.run_id} is being recorded; start another run instead"
+            return response
+        if 0 < self._plant.stamp <= least:
+            response.message = f"not before t = {to_seconds(least):g} s: the nodes would not see it"
+            return response
+        self._plant = self._make_plant()
+        self._commands.clear()
+        self._without.clear()
+        self._recorded, self._held = 0, False
+        self._tilt_reported = -DIAGNOSTICS_PERIOD
+        if self._running:
+            self._start()
+        response.success, response.message = True, "back at the start, t = 0"
         return response
 
     def _answer_pause(self, request: SetBool.Request, response: SetBool.Response):

@@ -4,7 +4,8 @@ State x (13 + 2n + m,): position (3,) and quaternion (4,) in the world, velocity
 to the uniform flow V in the body frame, q (n,), q_dot (n,), thrust (m,): dynamics in nu_r and
 p_dot = R v_r + V. With a constant V the frame that moves with it is inertial; where V varies with
 time, weight and buoyancy act in it with g - V_dot (`water.stream`). What waves add is in the forces
-on each body (`kernels.waves`). The wrench on the base is that of the thrusters and of the tether.
+on each body (`kernels.waves`). The wrench on the base is that of the thrusters, of the tether and
+of whoever pushes from outside.
 """
 
 from collections.abc import Sequence
@@ -38,6 +39,11 @@ POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 DEPTH = POSITION + 2
 
 
+NO_PUSH = np.zeros(0)
+PUSH = 12
+"""Length of a push: force (3,) N and moment (3,) N m in world axes, then the same in body axes."""
+
+
 class System(NamedTuple):
     """What the derivative of the state depends on besides state and commands."""
 
@@ -45,6 +51,7 @@ class System(NamedTuple):
     thrusters: Thrusters
     current: Array  # (3,) velocity of the water in the world, its constant part
     water: Water | None = None  # what moves beside it
+    push: Array = NO_PUSH  # (0,) or (12,) wrench at the body origin: in world axes, in body axes
 
 
 class Scratch(NamedTuple):
@@ -107,7 +114,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates, tim
     thrust (m,) N, joint torque (n,) N m.
     `simulate` is built on it. Raises ValueError for arrays that do not fit.
     """
-    model, thrusters, current, water = system
+    model, thrusters, current, water, push = system
     n, m, last = effort.shape[0], thrust_command.shape[0], states.shape[0] - 1
     work, stage, trial, wet = scratch
     size = JOINTS + 2 * n + m
@@ -120,13 +127,13 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates, tim
     for s in range(last + 1):
         now = time + s * step
         derivative(
-            model, thrusters, current, water, now, n, m,
+            model, thrusters, current, water, push, now, n, m,
             x, thrust_command, effort, work, wet, stage, FIRST,
         )  # fmt: skip
         _record(x, stage, states, rates, s)
         if s < last:
             finish_step(
-                model, thrusters, current, water, now, n, m,
+                model, thrusters, current, water, push, now, n, m,
                 x, thrust_command, effort, step, work, wet, stage, trial,
             )  # fmt: skip
 
@@ -141,7 +148,7 @@ def _record(x, stage, states, rates, s):
 
 @inner
 def finish_step(
-    model, thrusters, current, water, time, n, m,
+    model, thrusters, current, water, push, time, n, m,
     x, thrust_command, effort, step, work, wet, stage, trial,
 ):  # fmt: skip
     """Advance x by one step; row 0 of stage holds its derivative."""
@@ -151,7 +158,7 @@ def finish_step(
         for i in range(size):
             trial[i] = x[i] + part * stage[k - 1, i]
         derivative(
-            model, thrusters, current, water, time + part, n, m,
+            model, thrusters, current, water, push, time + part, n, m,
             trial, thrust_command, effort, work, wet, stage, k,
         )  # fmt: skip
     for i in range(size):
@@ -162,8 +169,9 @@ def finish_step(
 
 @inner
 def derivative(
-    model, thrusters, current, water, time, n, m, x, thrust_command, effort, work, wet, out, k
-):
+    model, thrusters, current, water, push, time, n, m,
+    x, thrust_command, effort, work, wet, out, k,
+):  # fmt: skip
     """Row k of out: the derivative of the state x at a time, s, under these commands."""
     a, b, c, d = _unit_quaternion(x)
     nu_r = spatial_at(x, VELOCITY)
@@ -183,6 +191,8 @@ def derivative(
     down = down_in_body(a, b, c, d)
     wrench = _thruster_wrench(thrusters, x, JOINTS + 2 * n)
     wrench = plus(wrench, load_wrench(tether_load(model, n, x[DEPTH]), down))
+    if push.shape[0] == PUSH:
+        wrench = plus(wrench, _push_in_body(push, a, b, c, d))
     quat = a, b, c, d
     spread_waves(model, water, wet, work, n, spatial_at(x, POSITION)[:3], quat, drift, time)
     down = apparent_down(water, moving, quat, down)
@@ -201,6 +211,28 @@ def _unit_quaternion(x):
     a, b, c, d = x[QUATERNION], x[QUATERNION + 1], x[QUATERNION + 2], x[QUATERNION + 3]
     scale = 1.0 / sqrt(a * a + b * b + c * c + d * d)
     return scale * a, scale * b, scale * c, scale * d
+
+
+@inner
+def _push_in_body(push, a, b, c, d):
+    """Body wrench of a push; quat = (a, b, c, d)."""
+    f = _into_body(push[0], push[1], push[2], a, b, c, d)
+    t = _into_body(push[3], push[4], push[5], a, b, c, d)
+    return (
+        f[0] + push[6],
+        f[1] + push[7],
+        f[2] + push[8],
+        t[0] + push[9],
+        t[1] + push[10],
+        t[2] + push[11],
+    )
+
+
+@inner
+def _into_body(u, v, w, a, b, c, d):
+    """R^T (u, v, w) = v - 2 e x (d v - e x v), e = (a, b, c)."""
+    t0, t1, t2 = d * u - (b * w - c * v), d * v - (c * u - a * w), d * w - (a * v - b * u)
+    return u - 2.0 * (b * t2 - c * t1), v - 2.0 * (c * t0 - a * t2), w - 2.0 * (a * t1 - b * t0)
 
 
 @inner

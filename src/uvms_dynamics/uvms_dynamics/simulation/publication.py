@@ -25,6 +25,8 @@ def plant_outputs(
     yield topics.TRUE_JOINT_STATES, truth.joints
     yield topics.TRUE_DISTURBANCE, truth.disturbance
     yield topics.JOINT_STATES, sensors.joints
+    if sensors.gaps is not None:
+        yield topics.SENSOR_GAPS, sensors.gaps
     for name, topic in sensor_topics:
         for sample in sensors.samples[name]:
             yield topic, sample

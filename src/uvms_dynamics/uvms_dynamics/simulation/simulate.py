@@ -58,7 +58,7 @@ def advance_batch(
     if system.water is not None:
         raise ConfigError("system: its water moves; advance_batch knows constant currents only")
     out, thrust, torque = _fitting(system, x, thrust_command, effort, (len(x),))
-    _advance_groups(*system[:3], out, thrust, torque, float(step), steps)
+    _advance_groups(*system[:3], system.push, out, thrust, torque, float(step), steps)
     return out
 
 
@@ -88,7 +88,7 @@ def _fitting(
 
 
 @kernel
-def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, steps):
+def _advance_groups(model, thrusters, current, push, x, thrust_command, effort, step, steps):
     n, m, count = effort.shape[1], thrust_command.shape[1], x.shape[0]
     lanes_x, lanes_trial = np.empty((x.shape[1], LANES)), np.empty((x.shape[1], LANES))
     lanes_thrust, lanes_effort = np.empty((m, LANES)), np.empty((n, LANES))
@@ -103,11 +103,11 @@ def _advance_groups(model, thrusters, current, x, thrust_command, effort, step, 
         _take(effort, first, lanes_effort)
         for _ in range(steps):
             derivative(
-                model, thrusters, current, None, 0.0, n, m,
+                model, thrusters, current, None, push, 0.0, n, m,
                 state, thrust, torque, work, None, stage, FIRST,
             )  # fmt: skip
             finish_step(
-                model, thrusters, current, None, 0.0, n, m,
+                model, thrusters, current, None, push, 0.0, n, m,
                 state, thrust, torque, step, work, None, stage, trial,
             )  # fmt: skip
         for lane in range(min(LANES, count - first)):

@@ -37,17 +37,29 @@ _HALVINGS = 40
 """Of the step in search of the instant of rest: to 1e-12 of it, where the rate is rounding."""
 
 
+def lock(system: System, held: Flags) -> System:
+    """The system with some of its joints (n,) held, by a model of its own."""
+    model = system.model.copy()
+    model[1 : 1 + len(held), ROTOR][held] = np.inf
+    return system._replace(model=model)
+
+
 class Brakes:
     """The brakes of one vehicle; `system` and `scratch` are those of its plant."""
 
     def __init__(self, vehicle: Vehicle, system: System, scratch: Scratch) -> None:
         self._torque = np.array([joint.brake_nm for joint in vehicle.arm.joints])
         self._n = vehicle.n_joints
-        self._system, self._scratch = system, scratch
-        self._locked = system._replace(model=system.model.copy())
+        self._scratch = scratch
+        self.change(system, np.zeros(self._n, dtype=np.bool_))
         size = scratch.trial.shape[0]
         self._row, self._rate = np.empty((2, size)), np.empty((2, size))
         self._now = 0.0  # s
+
+    def change(self, system: System, stuck: Flags) -> None:
+        """Go on with another system, and with joints (n,) that are stuck: those never slip."""
+        self._system, self._stuck = system, stuck.copy()
+        self._locked = lock(system, stuck)
 
     @property
     def exist(self) -> bool:
@@ -88,7 +100,7 @@ class Brakes:
         """
         q_dot = x[JOINTS + self._n : JOINTS + 2 * self._n]
         effort = -np.sign(q_dot) * self._torque
-        held = (q_dot == 0.0) & (self._torque > 0.0)
+        held = (q_dot == 0.0) & (self._torque > 0.0) & ~self._stuck
         self._lock(held)
         rate = self._derivative(x, thrust, effort)
         while may_slip and held.any():
@@ -106,7 +118,7 @@ class Brakes:
     def _lock(self, held: Flags) -> None:
         rows = slice(1, 1 + self._n)
         rotor = self._system.model[rows, ROTOR]
-        self._locked.model[rows, ROTOR] = np.where(held, np.inf, rotor)
+        self._locked.model[rows, ROTOR] = np.where(held | self._stuck, np.inf, rotor)
 
     def _load(self, x: Array, rate: Array) -> Array:
         """Torque (n,) that each joint needs for its motion besides friction and stops.

@@ -1,5 +1,7 @@
 """What a run of the plant starts from and how it is integrated."""
 
+from typing import Any
+
 import numpy as np
 from pydantic import Field, model_validator
 
@@ -17,12 +19,13 @@ from uvms_core.vehicle.postures import (
 )
 from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
+from uvms_dynamics.simulation.plant.mismatch import Mismatch
 from uvms_dynamics.simulation.water import CurrentConfig, velocity_at_start
 from uvms_dynamics.simulation.water.config import Speed, Turns
 
 
 class PlantConfig(StartConfig):
-    """Integration step, control period, start and current."""
+    """Integration step, control period, start, water, and how the plant differs from the model."""
 
     step_s: float = Field(0.005, gt=0.0, le=0.05, description="Runge-Kutta step, s")
     control_period_s: ControlPeriod = CONTROL_PERIOD_S
@@ -47,6 +50,16 @@ class PlantConfig(StartConfig):
     )
     current: CurrentConfig = Field(
         CurrentConfig(), description="how the water moves: the sum of what is given"
+    )
+    vehicle_overrides: dict[str, Any] = Field(
+        default_factory=dict,
+        description="values of the vehicle file that only the plant has, by dotted path, such as"
+        " `hull.cb_m: [0.0, 0.0024, 0.0]`; they come after `neutral` and `trim`, which do not see"
+        " them, and the nodes go on with the nominal vehicle",
+    )
+    mismatch: Mismatch = Field(
+        Mismatch(),
+        description="how far the plant's vehicle may be from the nominal one, drawn by the seed",
     )
 
     @property

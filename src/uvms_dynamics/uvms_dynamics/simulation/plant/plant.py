@@ -3,6 +3,7 @@
 import numpy as np
 
 from uvms_core import checks
+from uvms_core.errors import ConfigError
 from uvms_core.signals import (
     AppliedThrust,
     Array,
@@ -14,51 +15,82 @@ from uvms_core.signals import (
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.layout import EFFORT
 from uvms_dynamics.simulation.drives import ThrusterDrives
+from uvms_dynamics.simulation.events import Event, Events, Happened, Schedule, check_events
+from uvms_dynamics.simulation.events.kinds import check_payloads
+from uvms_dynamics.simulation.events.sensor import SensorEvent
 from uvms_dynamics.simulation.integrator import (
     JOINTS,
+    System,
     advance,
     make_scratch,
     make_system,
 )
+from uvms_dynamics.simulation.plant.as_built import as_built
 from uvms_dynamics.simulation.plant.brakes import Brakes
 from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state, steps_in
 from uvms_dynamics.simulation.plant.divergence import check_finite
-from uvms_dynamics.simulation.plant.stability import check_step
+from uvms_dynamics.simulation.plant.effects import EventEffects
+from uvms_dynamics.simulation.plant.stability import check_plant
 from uvms_dynamics.simulation.plant.truth import (
     PlantTruth,
+    pushed,
     true_disturbance,
     true_joints,
     true_odometry,
 )
 from uvms_dynamics.simulation.sensors import SensorFrame, SensorSuite
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
-from uvms_dynamics.simulation.water.surroundings import surroundings
+from uvms_dynamics.simulation.thrusters import SHARE
+from uvms_dynamics.simulation.water.surroundings import drift_at, surroundings
 
 
 class Plant:
     """One augmented system of 6 + n degrees of freedom, its thrusters and its sensors.
 
     `sense()` and `truth()` are for the present stamp, `step(...)` advances by one control period.
-    Raises ConfigError where periods are not multiples of the step or the step is unstable.
+
+    Args:
+        nominal: the vehicle of the file. The plant's own (`built`) may differ, by the config.
+        config: integration, start, water and mismatch.
+        seed: of the run.
+        events: what happens to it; each at the first control tick at or after its time.
+
+    Raises:
+        ConfigError: periods are not multiples of the step, the step is unstable with the vehicle or
+            with a payload, or an event does not fit the vehicle.
     """
 
-    def __init__(self, vehicle: Vehicle, config: PlantConfig, seed: int) -> None:
-        check_step(vehicle, config)
+    def __init__(
+        self, nominal: Vehicle, config: PlantConfig, seed: int, events: Events = ()
+    ) -> None:
+        self.built = as_built(nominal, config, seed)
+        vehicle = self.built.vehicle
+        check_events(events, vehicle)
+        check_plant(vehicle, config, events)
         self._vehicle, self._config = vehicle, config
         self._tethered = vehicle.tether is not None
         self._period = to_nanoseconds(config.control_period_s)
         self._step = to_nanoseconds(config.step_s)
         steps = steps_in(self._period, config, "control_period_s")
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
-        self._system = make_system(vehicle, config.flow)
-        self._drives = ThrusterDrives(vehicle, vehicle)
-        self._scratch = make_scratch(self._system)
-        self._brakes = Brakes(vehicle, self._system, self._scratch)
+        system = make_system(vehicle, config.flow)
+        system.thrusters[:, SHARE] = self.built.thrust_factors
+        self._drives = ThrusterDrives(nominal, vehicle)
+        self._scratch = make_scratch(system)
+        self._brakes = Brakes(vehicle, system, self._scratch)
         self._state = initial_state(vehicle, config)
+        self._effects = EventEffects(
+            vehicle, config.flow, self._drift, system, self._scratch, self._state, self._brakes
+        )
+        self._schedule = Schedule()
+        self._happened: list[Happened] = []
+        self._events = 0
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)
         self._effort = np.zeros(vehicle.n_joints)
         self._stamp = 0
+        for event in events:
+            self._plan(event)
         self._start()
 
     @property
@@ -78,13 +110,55 @@ class Plant:
         stamp, state, system = self._stamp, self._state, self._system
         moving = surroundings(system, state, to_seconds(stamp))
         drift = system.current if moving is None else moving.velocity
+        disturbance = true_disturbance(
+            stamp, system.model, state, self._rate, drift, self._tethered, moving
+        )
         return PlantTruth(
             true_odometry(stamp, state, drift),
             true_joints(stamp, state, self._effort),
-            true_disturbance(stamp, system.model, state, self._rate, drift, self._tethered, moving),
+            pushed(disturbance, state, self._effects.push_wrench),
             self._applied(),
             drift.copy() if moving is None else drift + moving.orbital[:3],
         )
+
+    def apply(self, event: Event) -> str:
+        """Take an event while the run is on; returns what will happen, in words.
+
+        One whose time has come happens at the present stamp. Raises ConfigError where it does not
+        fit the vehicle or the plant as it is, or where its time is past; nothing happens then.
+        """
+        event.check(self._vehicle)
+        check_payloads((*self._schedule.pending, event), self._effects.holds)
+        if to_nanoseconds(event.at_s) < self._stamp:
+            raise ConfigError(
+                f"at_s {event.at_s:g}: the plant is at {to_seconds(self._stamp):g} s already"
+            )
+        check_plant(self._vehicle, self._config, (event,))
+        self._plan(event)
+        self._let_happen()
+        return f"at {event.at_s:g} s: {event.text()}"
+
+    def take_happened(self) -> list[Happened]:
+        """The events that began or ended since this was last asked, each once."""
+        happened, self._happened = self._happened, []
+        return happened
+
+    def _plan(self, event: Event) -> None:
+        if isinstance(event, SensorEvent):
+            self._sensors.add_fault(event, self._events)
+        self._schedule.add(event)
+        self._events += 1
+
+    def _let_happen(self) -> None:
+        self._happened += self._schedule.run(self._stamp, self._effects)
+
+    def _drift(self) -> Array:
+        """Velocity (3,) of the water's frame over ground at the present stamp, in the world."""
+        return drift_at(self._system, to_seconds(self._stamp))
+
+    @property
+    def _system(self) -> System:
+        return self._effects.system
 
     def step(self, thruster: ThrusterCommand | None, joints: JointCommand | None) -> None:
         """Advance by one control period under constant commands, cut at the drives' limits.
@@ -108,6 +182,7 @@ class Plant:
         self._integrate(np.ascontiguousarray(realised), self._states, self._rates)
         stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
         self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
+        self._let_happen()
 
     def _applied(self) -> AppliedThrust:
         thruster, joints = self._commands
@@ -130,6 +205,7 @@ class Plant:
         self._safe = True, True
         self._integrate(idle, self._states[:1], self._rates[:1])
         self._frame = self._sample((0,), self._states[:1], self._rates[:1])
+        self._let_happen()
 
     def _integrate(self, thrust: Array, states: Array, rates: Array) -> None:
         """As many steps as the tables have rows after the first; the last is at the stamp."""
@@ -138,8 +214,8 @@ class Plant:
         if self._safe[1] and self._brakes.exist and len(states) > 1:
             self._brakes.advance(self._state, thrust, step, states, rates, began)
         else:
-            rows = self._scratch, states, rates
-            advance(self._system, self._state, thrust, self._effort, step, *rows, began)
+            system, rows = self._effects.moving, (self._scratch, states, rates)
+            advance(system, self._state, thrust, self._effort, step, *rows, began)
         self._rate = rates[-1].copy()
         check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)
 

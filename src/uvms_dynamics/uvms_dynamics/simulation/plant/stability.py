@@ -6,6 +6,7 @@ exp(h lambda). A step is refused where some mode that decays, or only swings, gr
 """
 
 import math
+from collections.abc import Iterable
 from typing import NamedTuple
 
 import numpy as np
@@ -16,6 +17,8 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels import joint_passive_torque, mass_matrix
 from uvms_dynamics.model.vehicle_table import build_model
+from uvms_dynamics.simulation.events import Event, Load, loaded
+from uvms_dynamics.simulation.events.payload import PayloadEvent
 from uvms_dynamics.simulation.integrator import (
     JOINTS,
     QUATERNION,
@@ -73,6 +76,17 @@ def check_step(vehicle: Vehicle, config: PlantConfig) -> None:
             f" of {abs(bound.eigenvalue):.3g} 1/s, {bound.point.name};"
             f" allowed: at most {_rounded_down(bound.step_s):g} s"
         )
+
+
+def check_plant(vehicle: Vehicle, config: PlantConfig, events: Iterable[Event]) -> None:
+    """As `check_step`, also with each payload of the events; ConfigError names the payload."""
+    check_step(vehicle, config)
+    for event in events:
+        if isinstance(event, PayloadEvent) and isinstance(event.payload, Load):
+            try:
+                check_step(loaded(vehicle, event.payload), config)
+            except ConfigError as fault:
+                raise ConfigError(f"{fault} (with the {event.text()})") from fault
 
 
 def greatest_step(vehicle: Vehicle, config: PlantConfig) -> Bound:

@@ -1,6 +1,6 @@
 """Ground truth of the plant: for logs and reports, never for a node of the loop."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -80,6 +80,15 @@ def true_disturbance(
     if tethered:
         external += _tether_wrench(model, state, n)
     return DisturbanceBudget(stamp, restoring_wrench(model, quat, q), coupling, external)
+
+
+def pushed(budget: DisturbanceBudget, state: Array, push: Array | None) -> DisturbanceBudget:
+    """The budget with a push (12,) of `integrator.PUSH` among the external wrench."""
+    if push is None:
+        return budget
+    rotation = quat_to_matrix(state[QUATERNION:VELOCITY]).T
+    turned = np.concatenate([rotation @ push[:3], rotation @ push[3:6]])
+    return replace(budget, external=budget.external + turned + push[6:])
 
 
 def _tether_wrench(model: Model, state: Array, n: int) -> Array:

@@ -7,18 +7,23 @@ from typing import Any
 from uvms_core import checks, registry
 from uvms_core.sensors import INERTIAL, sensor_types
 from uvms_core.signals import (
+    NOTHING_YET,
     Array,
     DvlSample,
     GpsSample,
     ImuSample,
     JointStates,
     PressureSample,
+    SensorGaps,
     to_nanoseconds,
 )
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation.events.measured import ENCODERS
+from uvms_dynamics.simulation.events.sensor import SensorEvent
 from uvms_dynamics.simulation.sensors.delivery import Delivery
 from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
+from uvms_dynamics.simulation.sensors.faults import FaultLine
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
 
@@ -29,6 +34,8 @@ class SensorFrame:
 
     samples: Mapping[str, tuple[Any, ...]]
     joints: JointStates
+    gaps: SensorGaps | None = None
+    """Which sensors did not give what was due, where there are any."""
 
     @property
     def imu(self) -> tuple[ImuSample, ...]:
@@ -74,17 +81,48 @@ class SensorSuite:
             self._models[name] = make(vehicle, section, period, seed)
             self.deliveries[name] = Delivery(name, section, seed)
         self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
+        self._seed = seed
+        self._lines: dict[str, FaultLine] = {}  # of the sensors with faults
+        self._now = -1
+        self._newest: dict[str, int] = {}
+
+    def add_fault(self, event: SensorEvent, number: int) -> None:
+        """Let a sensor fail; `number` is the event's own in the run."""
+        line = self._lines.setdefault(event.sensor, FaultLine(self._seed))
+        line.add(event, number)
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on a trajectory that is finite, and those of the encoders at its end."""
-        now = trajectory.stamps[-1]
-        return SensorFrame(
-            {
-                name: self.deliveries[name].deliver(checks.trust_all(model.sample(trajectory)), now)
-                for name, model in self._models.items()
-            },
-            checks.trust(self._encoders.sample(now, q, q_dot, effort)),
-        )
+        before, self._now = self._now, trajectory.stamps[-1]
+        samples = {
+            name: self._deliver(name, checks.trust_all(model.sample(trajectory)))
+            for name, model in self._models.items()
+        }
+        joints = checks.trust(self._encoders.sample(self._now, q, q_dot, effort))
+        if ENCODERS in self._lines:
+            (joints,) = self._lines[ENCODERS].pass_on((joints,), self._now)
+        return SensorFrame(samples, joints, self._gaps(samples, before))
+
+    def _deliver(self, name: str, samples: tuple[Any, ...]) -> tuple[Any, ...]:
+        """What comes now of what a sensor has measured, with the faults that events give it."""
+        come = self.deliveries[name].deliver(samples, self._now)
+        line = self._lines.get(name)
+        return come if line is None else line.pass_on(come, self._now)
+
+    def _gaps(self, samples: Mapping[str, tuple[Any, ...]], before: int) -> SensorGaps | None:
+        """What is missing or late of the samples since the stamp before."""
+        now, wrong = self._now, []
+        for name, model in self._models.items():
+            period, came = model.period, samples[name]
+            due = now // period - before // period
+            if came:
+                self._newest[name] = came[-1].stamp
+            if len(came) != due or (came and came[-1].stamp != now - now % period):
+                wrong.append(name)
+        if not wrong:
+            return None
+        newest = tuple(self._newest.get(name, NOTHING_YET) for name in wrong)
+        return checks.trust(SensorGaps(now, tuple(wrong), newest))
 
 
 def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
