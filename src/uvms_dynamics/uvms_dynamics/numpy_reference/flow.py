@@ -1,16 +1,16 @@
 """How the water moves, in plain numpy, to compare the kernels with.
 
 Each part is written as its definition; waves as Newman, Marine Hydrodynamics (1977), ch. 6, has
-them, with z down.
+them, with z down. What the water does is a `simulation.CurrentConfig`, whose fields are read here.
 """
 
-from typing import NamedTuple
+import functools
+import math
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_dynamics.simulation.water.airy import wave_number
-from uvms_dynamics.simulation.water.config import CurrentConfig, Gust, Oscillating, Turning, Wave
 
 
 class Flow(NamedTuple):
@@ -26,7 +26,7 @@ class Flow(NamedTuple):
         return self.rate + self.gradient @ self.velocity
 
 
-def flow_at(current: CurrentConfig, place: Array, time: float, gravity: float) -> Flow:
+def flow_at(current: Any, place: Array, time: float, gravity: float) -> Flow:
     """The sum of all parts at a place (3,) in the world, m, and a time, s."""
     uniform = [_turning(current.turning, time)]
     uniform += [_oscillating(part, time) for part in current.oscillating]
@@ -40,10 +40,10 @@ def flow_at(current: CurrentConfig, place: Array, time: float, gravity: float) -
     return Flow(velocity, rate, gradient)
 
 
-def wave_flow(wave: Wave, place: Array, time: float, gravity: float) -> Flow:
+def wave_flow(wave: Any, place: Array, time: float, gravity: float) -> Flow:
     """One wave: u = a omega C cos psi along it, w = -a omega S sin psi down."""
     h, omega = wave.water_depth_m, 2.0 * np.pi / wave.period_s
-    k = wave_number(wave.period_s, h, gravity)
+    k = _wave_number(omega, h, gravity)
     along = _toward(wave.direction_deg)
     down = np.array([0.0, 0.0, 1.0])
     z = min(max(place[2], 0.0), h)
@@ -59,21 +59,33 @@ def wave_flow(wave: Wave, place: Array, time: float, gravity: float) -> Flow:
     return Flow(u * along + w * down, -omega * (u_psi * along + w_psi * down), gradient)
 
 
-def _turning(turning: Turning, time: float) -> tuple[Array, Array]:
+@functools.cache
+def _wave_number(omega: float, depth: float, gravity: float) -> float:
+    """Root of omega^2 = g k tanh(k h), 1/m, by bisection between bounds that hold at any depth."""
+    low, high = omega**2 / gravity, omega**2 / gravity + omega / math.sqrt(gravity * depth)
+    while low < (middle := 0.5 * (low + high)) < high:
+        if gravity * middle * math.tanh(middle * depth) < omega**2:
+            low = middle
+        else:
+            high = middle
+    return high
+
+
+def _turning(turning: Any, time: float) -> tuple[Array, Array]:
     rate = 2.0 * np.pi / turning.period_s
     direction = turning.start_deg + np.degrees(rate * time)
     speed = turning.speed_m_s
     return speed * _toward(direction), speed * rate * _toward(direction + 90.0)
 
 
-def _oscillating(part: Oscillating, time: float) -> tuple[Array, Array]:
+def _oscillating(part: Any, time: float) -> tuple[Array, Array]:
     omega = 2.0 * np.pi / part.period_s
     phase = omega * time + np.radians(part.phase_deg)
     way = part.amplitude_m_s * _toward(part.direction_deg)
     return way * np.sin(phase), way * omega * np.cos(phase)
 
 
-def _gust(gust: Gust, time: float) -> tuple[Array, Array]:
+def _gust(gust: Any, time: float) -> tuple[Array, Array]:
     end = gust.at_s + gust.duration_s
     velocity, slope = np.array(gust.velocity_ned_m_s), 0.5 * np.pi / gust.rise_s
     if gust.at_s <= time < gust.at_s + gust.rise_s:

@@ -21,7 +21,7 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.simulation.plant.mismatch import Mismatch
 from uvms_dynamics.simulation.water import CurrentConfig, velocity_at_start
-from uvms_dynamics.simulation.water.config import Speed, Turns
+from uvms_dynamics.simulation.water.currents import Speed, Turns
 
 
 class PlantConfig(StartConfig):

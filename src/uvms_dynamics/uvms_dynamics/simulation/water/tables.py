@@ -13,7 +13,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.model.wet_bodies import build_wet_bodies
 from uvms_dynamics.simulation.water.airy import wave_number
-from uvms_dynamics.simulation.water.config import (
+from uvms_dynamics.simulation.water.currents import (
     CurrentConfig,
     Gust,
     Oscillating,
