@@ -64,6 +64,7 @@ class ThrustAllocator:
     ) -> None:
         self.lower, self.upper = box_of(limits)
         self.limits = np.maximum(-self.lower, self.upper)
+        self._reverses = self.lower < 0.0
         _check_layout(matrix, self.limits, slew)
         self.matrix, self._slew = matrix, slew
         self._config = config
@@ -125,7 +126,7 @@ class ThrustAllocator:
     ) -> tuple[ThrusterCommand, Allocation]:
         achieved = self.matrix @ thrust
         margin = SATURATION_MARGIN * self.limits
-        saturated = ((thrust <= lower + margin) & (self.lower < 0.0)) | (thrust >= upper - margin)
+        saturated = ((thrust <= lower + margin) & self._reverses) | (thrust >= upper - margin)
         command = ThrusterCommand(stamp, thrust)
         return command, Allocation(stamp, thrust, achieved, tau - achieved, saturated)
 

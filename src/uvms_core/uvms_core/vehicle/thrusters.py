@@ -42,7 +42,9 @@ class Thruster(Part):
     @model_validator(mode="after")
     def _check_limits(self) -> "Thruster":
         if self.limit_n is not None and self.limits_n is not None:
-            raise ValueError("limit_n and limits_n are the same thing: give one of them")
+            raise ValueError(
+                "limit_n and limits_n are the same thing: give one of them, or null for the other"
+            )
         if self.limit_n is None and self.limits_n is None and self.curve is None:
             raise ValueError("needs limit_n, limits_n or a curve, from which its limits follow")
         if self.limits_n is not None:
