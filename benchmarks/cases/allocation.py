@@ -25,7 +25,7 @@ class Problem:
 
     def __init__(self) -> None:
         vehicle, config = load_vehicle(), AllocatorConfig()
-        limits = np.array([thruster.limit_n for thruster in vehicle.thrusters])
+        limits = np.array([thruster.greatest_n for thruster in vehicle.thrusters])
         matrix, m = thruster_matrix(vehicle), len(limits)
         authority = np.abs(matrix) @ limits
         self.scale = np.array(config.weights) / authority

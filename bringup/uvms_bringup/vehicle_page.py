@@ -69,6 +69,7 @@ def _lines(summary: dict[str, Any]) -> Iterator[str]:
     )
     yield from _bodies(summary)
     yield from _floating(summary)
+    yield from _thrusters(summary)
     yield from _thrust(summary)
     yield from _joints(summary)
     yield "  sensors"
@@ -119,6 +120,15 @@ def _degrees(value: float) -> str:
 
 def _seconds(value: float) -> str:
     return f"{value:.3g} s" if math.isfinite(value) else "none"
+
+
+def _thrusters(summary: dict[str, Any]) -> Iterator[str]:
+    """Limits of each thruster, and the thrusts around none that it cannot give."""
+    yield f"  {'thruster':24}{'limits':>16}"
+    for name, thruster in summary["thrusters"].items():
+        (astern, ahead), least = thruster["limits_n"], thruster["least_n"]
+        gap = f"  none, or beyond {least[0]:.3g} and {least[1]:.3g} N" if any(least) else ""
+        yield f"    {name:22}{astern + 0.0:>9.4g} to {ahead:<6.4g} N{gap}"
 
 
 def _thrust(summary: dict[str, Any]) -> Iterator[str]:

@@ -32,6 +32,14 @@ def vehicle_summary(vehicle: Vehicle) -> dict[str, Any]:
         "links": {link.name: _body(link) for link in vehicle.arm.links},
         "floating": {name: _floating(vehicle, q) for name, q in postures(vehicle)},
         "periods_s": _periods(vehicle),
+        "thrusters": {
+            thruster.name: {
+                "limits_n": [thruster.astern_n, thruster.ahead_n],
+                "least_n": list(thruster.least_n),
+                "dead_zone": thruster.dead_zone,
+            }
+            for thruster in vehicle.thrusters
+        },
         "authority": _authority(vehicle),
         "axes_out_of_reach": list(axes_out_of_reach(vehicle)),
         "speed_m_s": _speeds(vehicle),

@@ -100,7 +100,7 @@ def test_nothing_is_refused_by_bounds_of_another_vehicle_or_at_full_authority(na
     loop = Loop(scenario, unusual(model, name))
     process = loop._process
     process._plausibility = Plausibility(model)  # nobody has told it
-    limits = np.array([thruster.limit_n for thruster in model.thrusters])
+    limits = np.array([thruster.greatest_n for thruster in model.thrusters])
     torques = np.array([joint.effort_limit_nm for joint in model.arm.joints])
     for k in range(200):
         tick, way = loop.tick(), 1.0 if (k // REVERSAL_TICKS) % 2 else -1.0

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from uvms_control.allocation import ThrustAllocator, axis_authority
 from uvms_control.config import AllocatorConfig
+from uvms_control.errors import ControlSetupError
 from uvms_core.signals import Wrench
 from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import configuration_matrix
@@ -59,6 +60,11 @@ def test_any_limits_give_the_weighted_least_squares_thrust(seed, m):
     assert np.allclose(thrust, scale * second, atol=1e-4 * scale.max())
     assert (thrust >= limits[0]).all()
     assert (thrust <= limits[1]).all()
+
+
+def test_limits_astern_are_negative():
+    with pytest.raises(ControlSetupError, match=r"thruster limits astern: \[2\.\], expected none"):
+        along_surge(1, (2.0, 50.0), (0.0, 0.0))
 
 
 def test_authority_differs_by_direction():

@@ -190,9 +190,9 @@ def test_the_greatest_accelerations_follow_from_newtons_law():
     vehicle, agility = VEHICLE, agility_of(VEHICLE)
     surge = vehicle.hull.mass_kg + diagonal(vehicle.hull.added_mass)[0]
     forward = [t for t in vehicle.thrusters if t.direction[0] == 1.0]
-    own = sum(t.limit_n for t in forward) / surge
+    own = sum(t.greatest_n for t in forward) / surge
     assert own < agility.nu_dot[0] < vehicle.environment.gravity_m_s2 + 10.0 * own
-    assert agility.wrench[0] == sum(t.limit_n for t in forward)
+    assert agility.wrench[0] == sum(t.greatest_n for t in forward)
     for joint, rate in zip(vehicle.arm.joints, agility.q_ddot, strict=True):
         assert rate <= 1.2 * joint.effort_limit_nm / joint.rotor_inertia_kg_m2
 

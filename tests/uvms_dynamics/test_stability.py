@@ -271,7 +271,7 @@ def fastest_joint(vehicle, config, step, seconds=5.0):
     system, x, rng = system_of(vehicle, config), initial_state(vehicle, config), RNG(1)
     scratch, rates = make_scratch(system), []
     torque = np.array([joint.effort_limit_nm for joint in vehicle.arm.joints])
-    force = np.array([thruster.limit_n for thruster in vehicle.thrusters])
+    force = np.array([thruster.greatest_n for thruster in vehicle.thrusters])
     states = np.empty((max(1, round(0.5 / step)) + 1, len(x)))
     for _ in range(round(seconds / 0.5)):
         effort = torque * rng.choice([-1.0, 0.0, 1.0], len(torque))

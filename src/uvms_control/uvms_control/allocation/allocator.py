@@ -64,7 +64,8 @@ class ThrustAllocator:
     ) -> None:
         self.lower, self.upper = box_of(limits)
         self.limits = np.maximum(-self.lower, self.upper)
-        _check_layout(matrix, self.limits, slew)
+        self._reverses = self.lower < 0.0
+        _check_layout(matrix, self.lower, self.limits, slew)
         self.matrix, self._slew = matrix, slew
         self._config = config
         box, weights = np.vstack([self.lower, self.upper]), np.array(config.weights)
@@ -125,7 +126,7 @@ class ThrustAllocator:
     ) -> tuple[ThrusterCommand, Allocation]:
         achieved = self.matrix @ thrust
         margin = SATURATION_MARGIN * self.limits
-        saturated = ((thrust <= lower + margin) & (self.lower < 0.0)) | (thrust >= upper - margin)
+        saturated = ((thrust <= lower + margin) & self._reverses) | (thrust >= upper - margin)
         command = ThrusterCommand(stamp, thrust)
         return command, Allocation(stamp, thrust, achieved, tau - achieved, saturated)
 
@@ -161,7 +162,7 @@ class ThrustAllocator:
         return best
 
 
-def _check_layout(matrix: Array, limits: Array, slew: Array) -> None:
+def _check_layout(matrix: Array, lower: Array, limits: Array, slew: Array) -> None:
     m = np.size(limits)
     if np.shape(matrix) != (6, m) or m == 0:
         raise ControlSetupError(f"thruster matrix: shape {np.shape(matrix)}, expected (6, {m})")
@@ -172,3 +173,5 @@ def _check_layout(matrix: Array, limits: Array, slew: Array) -> None:
     for name, values in (("limits", limits), ("slew limits", slew)):
         if not (values > 0.0).all():
             raise ControlSetupError(f"thruster {name}: {values}, expected positive numbers")
+    if (lower > 0.0).any():
+        raise ControlSetupError(f"thruster limits astern: {lower}, expected none above 0")

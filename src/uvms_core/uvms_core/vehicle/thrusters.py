@@ -1,6 +1,6 @@
 """One thruster of the vehicle: where it is, what it can give, and how it follows a command."""
 
-from functools import cached_property
+from functools import lru_cache
 
 from pydantic import Field, model_validator
 
@@ -42,7 +42,9 @@ class Thruster(Part):
     @model_validator(mode="after")
     def _check_limits(self) -> "Thruster":
         if self.limit_n is not None and self.limits_n is not None:
-            raise ValueError("limit_n and limits_n are the same thing: give one of them")
+            raise ValueError(
+                "limit_n and limits_n are the same thing: give one of them, or null for the other"
+            )
         if self.limit_n is None and self.limits_n is None and self.curve is None:
             raise ValueError("needs limit_n, limits_n or a curve, from which its limits follow")
         if self.limits_n is not None:
@@ -95,11 +97,11 @@ class Thruster(Part):
         """Whether it gives every thrust within its limits, in proportion to the command."""
         return self.curve is None and self.dead_zone == 0.0
 
-    @cached_property
+    @property
     def table(self) -> ThrustTable:
         """Thrust by command, and its inverse."""
         curve = self.curve or ThrustCurve.straight(self.astern_n, self.ahead_n)
-        return curve.table(self.dead_zone)
+        return _table(curve, self.dead_zone)
 
     @property
     def least_n(self) -> tuple[float, float]:
@@ -117,3 +119,9 @@ class Thruster(Part):
     def reachable(self, thrust: Array | float) -> Array:
         """The thrust nearest to a wanted one, N, that the thruster can give and hold."""
         return self.table.reachable(thrust).clip(self.astern_n, self.ahead_n)
+
+
+@lru_cache(maxsize=256)
+def _table(curve: ThrustCurve, dead_zone: float) -> ThrustTable:
+    """The table of a curve, made once; thrusters of one kind share it."""
+    return curve.table(dead_zone)

@@ -28,13 +28,21 @@ SLOWEST_DRIVE = 10.0
 """Time constant of a thruster and time from rest to its limit, s: propellers take below one."""
 
 
+WIDEST_DEAD_ZONE = 0.3
+"""Share of the command without thrust: drives for propellers have a few hundredths to a tenth."""
+
+GREATEST_LEAST = 0.2
+"""Least thrust over the limit: a propeller that turns slowly gives a hundredth."""
+
+
 def check_propulsion(vehicle: Vehicle) -> Iterator[Finding]:
-    """Positions, reach, depth keeping, speed and response."""
+    """Positions, reach, depth keeping, speed, response and dead zones."""
     yield from _positions(vehicle)
     yield from _reach(vehicle)
     yield from _depth(vehicle)
     yield from _speed(vehicle)
     yield from _response(vehicle)
+    yield from _dead_zones(vehicle)
 
 
 def axes_out_of_reach(vehicle: Vehicle) -> tuple[str, ...]:
@@ -151,3 +159,21 @@ def _response(vehicle: Vehicle) -> Iterator[Finding]:
                     f"{thruster.name} takes {time:.3g} s to its thrust, more than"
                     f" {SLOWEST_DRIVE:g}; a propeller takes below one",
                 )
+
+
+def _dead_zones(vehicle: Vehicle) -> Iterator[Finding]:
+    for number, thruster in enumerate(vehicle.thrusters):
+        path = f"thrusters.{number}"
+        if thruster.dead_zone > WIDEST_DEAD_ZONE:
+            yield Finding(
+                f"{path}.dead_zone",
+                f"{thruster.name} has no thrust up to {thruster.dead_zone:.0%} of its command, more"
+                f" than {WIDEST_DEAD_ZONE:.0%}; drives have a few per cent",
+            )
+        least = max(thruster.least_n[1], -thruster.least_n[0])
+        if least > GREATEST_LEAST * thruster.greatest_n:
+            yield Finding(
+                f"{path}.{'dead_zone' if thruster.curve is None else 'curve'}",
+                f"{thruster.name} gives none or {least:.3g} N, more than {GREATEST_LEAST:.0%} of"
+                f" its {thruster.greatest_n:.4g} N; nothing in between can be held",
+            )
