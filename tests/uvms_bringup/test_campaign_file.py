@@ -180,7 +180,10 @@ def test_a_wrong_file_names_the_field(tmp_path, text, message):
         ("draw: {plant.step: {uniform: [0, 1]}}", "plant.step: Extra inputs"),
         ("require: {roll_deg.most: {max: 1}}", "require: 'roll_deg.most' is no field of a summary"),
         ("vehicle: none", "unknown vehicle 'none'"),
-        ("baselines: {off: {control.laws: 1}}", "case 'run/off': scenario hover.yaml: control.laws"),
+        (
+            "baselines: {off: {control.laws: 1}}",
+            "case 'run/off': scenario hover.yaml: control.laws",
+        ),
     ],
 )
 def test_a_wrong_path_or_value_is_found_before_anything_runs(tmp_path, text, message):
