@@ -37,5 +37,5 @@ def test_the_summary_from_memory_is_that_of_the_log(tmp_path, name, settings, du
 
 def test_a_run_that_cannot_begin_raises():
     scenario = load_scenario("hover", ["vehicle.hull.mass_kg=-1"])
-    with pytest.raises(UvmsError, match="hull.mass_kg"):
+    with pytest.raises(UvmsError, match=r"hull\.mass_kg"):
         summary_of(scenario)
