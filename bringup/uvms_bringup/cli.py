@@ -21,6 +21,8 @@ EXAMPLES = """examples:
   uvms run arm_swing --set control.observer=false --output runs/without_observer
   uvms simulate hover --seed 3 --duration 20   the same loop in one process, without ROS
   uvms report runs/without_observer/run.mcap   figures and a page about a run
+  uvms campaign observer_study                 many runs on all cores, judged by requirements
+  uvms compare runs/one runs/two               two runs side by side
   uvms replay runs/without_observer/run.mcap --into controller
   uvms added-mass spheroid:2.4,0.38            added mass of a shape or of a mesh file
   uvms validate bringup/data/pool_trials --vehicle bluerov2_alpha5

@@ -7,7 +7,8 @@ import sys
 import pytest
 from project import PACKAGES, modules
 
-HEAVY = ("numba", "scipy", "rclpy", "matplotlib", "mcap", "rich", "capytaine")
+CAMPAIGNS = ("dask", "distributed", "pyarrow", "pandas")
+HEAVY = ("numba", "scipy", "rclpy", "matplotlib", "mcap", "rich", "capytaine", *CAMPAIGNS)
 OF_HELP = (*HEAVY, "numpy", "yaml")
 
 
@@ -56,6 +57,18 @@ def test_the_command_line_is_there_at_once(words):
     assert loaded(command_line(words), OF_HELP) == []
 
 
-@pytest.mark.parametrize("command", ["run", "simulate", "replay", "report", "validate", "identify"])
+@pytest.mark.parametrize(
+    "command",
+    ["run", "simulate", "campaign", "compare", "replay", "report", "validate", "identify"],
+)
 def test_the_help_of_a_command_needs_no_kernels(command):
     assert loaded(command_line([command, "--help"]), HEAVY) == []
+
+
+def test_a_single_run_needs_nothing_of_campaigns():
+    code = """
+from uvms_bringup.commands import run, simulate
+from uvms_bringup.scenario import load_scenario
+from uvms_bringup import session
+"""
+    assert loaded(code, CAMPAIGNS) == []

@@ -1,9 +1,9 @@
 """Runs on the workers of dask.distributed: those of this machine, or of a scheduler elsewhere."""
 
-import asyncio
 import logging
 import queue
 import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -178,14 +178,30 @@ class Cluster:
 
 
 def _connected(address: str) -> Client:
-    try:
-        with dask.config.set({"distributed.comm.timeouts.connect": PATIENCE_S}):
-            return Client(address, timeout=PATIENCE_S)
-    except (OSError, ValueError, asyncio.TimeoutError) as fault:
-        raise CampaignError(
-            f"--scheduler {address}: no scheduler answers there within {PATIENCE_S:g} s;"
-            " start one with `dask scheduler`, and its workers with `dask worker ADDRESS`"
-        ) from fault
+    """A client of the scheduler.
+
+    The connection is made in a thread that is given up when its time is over: dask goes on waiting
+    for a peer that takes the connection and says nothing.
+    """
+    found: list[Client] = []
+    faults: list[Exception] = []
+
+    def connect() -> None:
+        try:
+            found.append(Client(address, timeout=PATIENCE_S, set_as_default=False))
+        except Exception as fault:  # of the network, of the address, of dask
+            faults.append(fault)
+
+    thread = threading.Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(PATIENCE_S)
+    if found:
+        return found[0]
+    why = f": {faults[0]}" if faults else ""
+    raise CampaignError(
+        f"--scheduler {address}: no scheduler answers there within {PATIENCE_S:g} s{why}; start"
+        " one with `dask scheduler`, and its workers with `dask worker ADDRESS`"
+    )
 
 
 def _drained(done: "queue.SimpleQueue[Future]") -> list[Future]:

@@ -121,7 +121,7 @@ class Conduct:
             with CampaignProgress(total, total - len(left)) as progress:
                 for row in cluster.rows(iter(left), folder, self.logs, signals.check):
                     journal.add(row)
-                    progress.add(row["passed"])
+                    progress.add(row["passed"] or bool(row["beside"]))
 
 
 def _claimed(folder: Path, command: str) -> Claim:

@@ -37,7 +37,7 @@ class CampaignProgress:
             self._bar.stop()
 
     def add(self, passed: bool) -> None:
-        """One more run has ended."""
+        """One more run has ended; one of a baseline does not count as failed."""
         self._done += 1
         self._failed += not passed
         if self._bar is not None:
