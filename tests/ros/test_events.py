@@ -11,6 +11,7 @@ from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from uvms_analysis.log.compare import compare
+from uvms_analysis.log.read import RunLog
 from uvms_core import registry, topics
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.node import qos_profile
@@ -74,6 +75,16 @@ def test_the_summary_tells_what_was_drawn_and_what_happened(runs):
     assert len(graph["events"]) == 10 + 6  # six of them end
     assert graph["events"][0] == {"at_s": 0.5, "text": "payload grasped: 1.02 kg, 0.5 l"}
     assert "plant_vehicle.yaml" in runs[0].log.attachments
+
+
+def test_navigation_replays_a_log_with_silent_and_late_sensors(runs, tmp_path):
+    replayed = finished(
+        uvms(tmp_path, "replay", str(runs[0].folder / "run.mcap"), "--into", "navigation")
+    )
+    log = RunLog.open(replayed.folder / "replay.mcap")
+    (difference,) = compare(runs[0].log, log, [topics.ODOMETRY])
+    assert difference.recorded == difference.replayed == difference.common == 61
+    assert difference.greatest == 0.0
 
 
 class Caller:
