@@ -16,6 +16,7 @@ from pydantic.fields import FieldInfo
 from pydantic_core import PydanticUndefined
 
 from uvms_bringup.scenario import Scenario
+from uvms_core.config import models_in
 from uvms_core.plugin import PluginConfig
 from uvms_core.vehicle import Vehicle
 from uvms_core.yaml_text import dump_yaml
@@ -70,12 +71,12 @@ def _sections(
     title = f"`{path}`" if path else "Top level"
     yield f"## {title}\n\n{_summary(model)}{note}\n\n{_table(model, defaults, path)}"
     for name, field in model.model_fields.items():
-        inner = _model_in(field.annotation)
+        models = list(models_in(field.annotation))
         value = _default(field, name, defaults)
-        if isinstance(value, BaseModel):  # such as the parameters of a part
-            inner = inner or type(value)
-        if inner is not None:
-            own = value if isinstance(value, BaseModel) else None
+        if isinstance(value, BaseModel) and not models:  # such as the parameters of a part
+            models = [type(value)]
+        own = value if isinstance(value, BaseModel) else None
+        for inner in models:
             yield from _sections(inner, own, _inside(path, name, field, inner), _note(field))
 
 
@@ -145,7 +146,8 @@ def _type(annotation: Any) -> str:
     if origin is Literal:
         return " or ".join(f"`{choice}`" for choice in arguments)
     if origin in (Union, types.UnionType):
-        return " or ".join(_type(each) for each in arguments if each is not type(None))
+        names = (_type(each) for each in arguments if each is not type(None))
+        return " or ".join(dict.fromkeys(names))
     if origin is dict:
         return f"map from name to {_type(arguments[1])}"
     if origin is tuple:

@@ -109,7 +109,7 @@ class Scenario(Config):
             ScenarioError: there is no such vehicle, or the run cannot start with it.
         """
         vehicle = load_vehicle(vehicle_path(self.vehicle), self.vehicle_overrides)
-        check_start(vehicle, self.plant, self.planner, self.seed, self.events, self.duration_s)
+        check_start(vehicle, self.plant, self.planner, self.seed, self.events)
         return vehicle
 
     def for_vehicle(self, vehicle: Vehicle) -> "Scenario":

@@ -19,18 +19,17 @@ def check_start(
     planner: PlannerConfig,
     seed: int = 1,
     events: Events = (),
-    duration_s: float | None = None,
 ) -> None:
     """Check vehicle, plant, planner and events against each other.
 
     Raises:
         ScenarioError: a period is not a multiple of the one that it depends on, the integration
             step is unstable with the vehicle as the plant has it or with a payload, the joints
-            cannot start where the plant says, or an event does not fit vehicle or run.
+            cannot start where the plant says, or an event does not fit the vehicle.
     """
     _check_periods(vehicle, plant, planner)
     try:
-        check_events(events, vehicle, duration_s)
+        check_events(events, vehicle)
     except ConfigError as fault:
         raise ScenarioError(str(fault)) from fault
     try:

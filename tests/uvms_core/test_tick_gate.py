@@ -3,6 +3,7 @@
 import itertools
 from dataclasses import dataclass
 
+import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -213,3 +214,61 @@ def test_a_refused_reference_excuses_no_tick_of_the_next_one(order):
         released += gated.push(name, 20 * DT, good if name == "reference" else 20)
     (tick,) = released
     assert tick["reference"] == good
+
+
+def skipping_gate() -> TickGate:
+    """Trigger and a second sensor every 50 ms, in lockstep."""
+    inputs = {"imu": Periodic(50), "dvl": Periodic(50)}
+    return TickGate(inputs, trigger="imu", lockstep=True, every=50)
+
+
+def test_a_tick_does_not_wait_for_a_sample_that_is_said_to_be_missing():
+    gate = skipping_gate()
+    gate.push("dvl", 0, "d0")
+    assert [tick.stamp for tick in gate.push("imu", 0, "i0")] == [0]
+    assert gate.push("imu", 50, "i50") == []
+    (tick,) = gate.skip(50, {"dvl": 0})
+    assert (tick.stamp, tick["imu"], tick["dvl"]) == (50, ("i50",), ())
+    assert gate.held == gate.late == 0  # nothing was wrong with the node's inputs
+
+
+def test_it_waits_for_the_late_sample_that_is_said_to_have_come():
+    gate = skipping_gate()
+    gate.push("dvl", 0, "d0")
+    gate.push("imu", 0, "i0")
+    gate.push("imu", 50, "i50")
+    gate.skip(50, {"dvl": 0})
+    assert gate.push("imu", 100, "i100") == []
+    assert gate.skip(100, {"dvl": 50}) == []
+    (tick,) = gate.push("dvl", 50, "d50")
+    assert (tick.stamp, tick["dvl"]) == (100, ("d50",))
+
+
+def test_a_tick_begins_without_a_trigger_that_is_missing():
+    gate = skipping_gate()
+    gate.push("dvl", 0, "d0")
+    gate.push("imu", 0, "i0")
+    assert gate.push("dvl", 50, "d50") == []
+    (tick,) = gate.skip(50, {"imu": 0})
+    assert (tick.stamp, tick["imu"], tick["dvl"]) == (50, (), ("d50",))
+    gate.skip(100, {"imu": 50, "dvl": 50})  # the trigger comes late
+    (tick,) = gate.push("imu", 50, "i50")
+    assert (tick.stamp, tick["imu"]) == (100, ("i50",))
+
+
+@pytest.mark.parametrize(
+    "order", [(0, 1, 2), (0, 2, 1), (1, 0, 2), (1, 2, 0), (2, 0, 1), (2, 1, 0)]
+)
+def test_the_order_in_which_messages_and_gaps_come_does_not_matter(order):
+    gate = skipping_gate()
+    gate.push("dvl", 0, "d0")
+    gate.push("imu", 0, "i0")
+    gate.skip(50, {"dvl": 0})
+    gate.push("imu", 50, "i50")
+    steps = (
+        lambda: gate.push("imu", 100, "i100"),
+        lambda: gate.push("dvl", 50, "d50"),
+        lambda: gate.skip(100, {"dvl": 50}),
+    )
+    ticks = [tick for k in order for tick in steps[k]()]
+    assert [(tick.stamp, tick["dvl"]) for tick in ticks] == [(100, ("d50",))]

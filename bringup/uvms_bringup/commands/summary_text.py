@@ -24,6 +24,10 @@ def summary_text(summary: Mapping[str, Any]) -> str:
             rms, most = factor * values["rms"], factor * values["max"]
             lines.append(f"{words}: {rms:.3g} {unit} rms, {most:.3g} {unit} at most")
     lines += [f"event: {each['at_s']:g} s: {each['text']}" for each in summary.get("events") or ()]
+    later = [each["at_s"] for each in summary.get("events_not_reached") or ()]
+    if later:
+        times = ", ".join(f"{time:g} s" for time in later)
+        lines.append(f"note: the run ended before its events at {times}")
     lines += [f"incident: {text}" for text in summary.get("incidents") or ()]
     return "\n".join(lines)
 

@@ -23,7 +23,7 @@ from uvms_bringup.ros.input_player import InputPlayer
 from uvms_bringup.ros.metronome import Metronome
 from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
 from uvms_bringup.ros.processes import NodeProcesses, environment, node_command
-from uvms_bringup.ros.schedule import TickOf, TickRecord, schedule
+from uvms_bringup.ros.schedule import TickOf, TickRecord, schedule, with_gaps
 from uvms_bringup.run_id import new_run_id
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
@@ -55,7 +55,7 @@ class NodeReplay:
         self._vehicle = Analysis(run).vehicle
         period = to_nanoseconds(self.scenario.plant.control_period_s)
         tick_of = TickOf(run, period, to_nanoseconds(self.scenario.planner.step_s))
-        self.topics = self._topics_of(node)
+        self.topics = with_gaps(run, self._topics_of(node))
         self.ticks = schedule(run, node, tick_of, self.topics)
         values = environment(folder / "logs")
         command = f"uvms replay {run.path} --into {node}"

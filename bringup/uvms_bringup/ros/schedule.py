@@ -1,12 +1,14 @@
 """What a node gets and gives in a recorded run, tick by tick."""
 
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_bringup.ros.recorder import stamp_of
 from uvms_core import topics
+from uvms_core.sensors import sensor_type
+from uvms_core.topic import SENSORS
 
 Input = tuple[str, bytes]
 
@@ -36,6 +38,35 @@ class TickOf:
         return -(-stamp // self._period) * self._period
 
 
+def with_gaps(run: RunLog, own: topics.NodeTopics) -> topics.NodeTopics:
+    """The node's topics, with what the plant said of missing samples if it reads sensors."""
+    reads_sensors = any(topic.name.startswith(SENSORS) for topic in own.inputs)
+    if not reads_sensors or not run.has(topics.SENSOR_GAPS):
+        return own
+    return replace(own, inputs=(*own.inputs, topics.SENSOR_GAPS))
+
+
+class Arrivals:
+    """When samples came: with their stamps, or later where the plant said so."""
+
+    def __init__(self, run: RunLog) -> None:
+        self._told: dict[str, dict[int, int]] = {}  # newest stamp by tick, by full topic name
+        gaps = run.signals(topics.SENSOR_GAPS) if run.has(topics.SENSOR_GAPS) else []
+        for each in gaps:
+            for sensor, newest in zip(each.sensors, each.newest, strict=True):
+                name = sensor_type(sensor).topic.resolve(run.namespace)
+                self._told.setdefault(name, {})[each.stamp] = newest
+
+    def __call__(self, name: str, stamp: int, tick: int) -> int:
+        """The stamp or tick with which a sample came that was due at `tick`, ns."""
+        told = self._told.get(name, {})
+        if told.get(tick, stamp) >= stamp:
+            return stamp
+        return min(
+            (at for at, newest in told.items() if at > tick and newest >= stamp), default=stamp
+        )
+
+
 def schedule(
     run: RunLog, node: str, tick_of: TickOf, wanted: topics.NodeTopics | None = None
 ) -> list[TickRecord]:
@@ -56,8 +87,14 @@ def schedule(
     ticks = _ticks(run, [name for name in outputs if name in run.topics], tick_of)
     if not ticks:
         raise LogError(f"log {run.path}: has no output of {node} ({', '.join(outputs)})")
+    arrivals = Arrivals(run)
+
+    def came(name: str, stamp: int) -> int:
+        return arrivals(name, stamp, tick_of(name, stamp))
+
     recorded = sorted(
-        ((stamp_of(data), name, data) for name, _, data in run.raw(inputs)), key=lambda one: one[0]
+        ((came(name, stamp_of(data)), name, data) for name, _, data in run.raw(inputs)),
+        key=lambda one: one[0],
     )
     order = iter(ticks)
     tick = next(order)

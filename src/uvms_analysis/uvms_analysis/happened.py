@@ -1,4 +1,4 @@
-"""The events of a run: what the plant says on /diagnostics that happened to it."""
+"""The events of a run: what the plant says on /diagnostics that happened to it, and the rest."""
 
 from collections.abc import Iterator
 from typing import Any
@@ -17,3 +17,13 @@ def events_of(log: RunLog) -> Iterator[dict[str, Any]]:
         for name, text in status.values.items():
             if name.startswith(EVENT) and name != AT:
                 yield {"at_s": status.number(AT), "text": str(text)}
+
+
+def not_reached(log: RunLog, end_s: float) -> list[dict[str, Any]]:
+    """Events of the scenario that come after the end of the run, as it gives them."""
+    events = log.configuration().get("events") or ()
+    return [
+        {name: value for name, value in event.items() if value is not None}
+        for event in events
+        if isinstance(event, dict) and float(event.get("at_s", 0.0)) > end_s
+    ]

@@ -10,7 +10,7 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import check_log
 from uvms_analysis.counters import node_counters
 from uvms_analysis.errors import LogError, determine
-from uvms_analysis.happened import events_of
+from uvms_analysis.happened import events_of, not_reached
 from uvms_analysis.log import plant_record
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
@@ -92,6 +92,9 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
     )
     summary["plant"] = figures.of("plant", lambda: plant_record.read(log))
     summary["events"] = figures.of("events", lambda: list(events_of(log)))
+    summary["events_not_reached"] = figures.of(
+        "events_not_reached", lambda: not_reached(log, duration or 0.0)
+    )
     summary["check"] = check.summary()
     summary["missing"] = figures.missing
     return summary

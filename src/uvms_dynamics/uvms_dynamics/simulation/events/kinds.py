@@ -118,25 +118,19 @@ def event_from_text(text: str, now: int) -> Event:
     return config.events[0]
 
 
-def check_events(events: Events, vehicle: Vehicle, duration_s: float | None = None) -> None:
-    """Check events against the vehicle and the run, before anything starts.
+def check_events(events: Events, vehicle: Vehicle) -> None:
+    """Check events against the vehicle, before anything starts.
 
     Raises:
-        ConfigError: a name that the vehicle does not have, a size that does not fit, an event that
-            the run does not reach, or a payload that is released without one.
+        ConfigError: a name that the vehicle does not have, a size that does not fit, or a payload
+            that is released without one.
     """
     for number, event in enumerate(events):
         try:
-            _check(event, vehicle, duration_s)
+            event.check(vehicle)
         except ConfigError as fault:
             raise ConfigError(f"events.{number}: {fault}") from fault
     check_payloads(events)
-
-
-def _check(event: Event, vehicle: Vehicle, duration_s: float | None) -> None:
-    event.check(vehicle)
-    if duration_s is not None and event.at_s >= duration_s:
-        raise ConfigError(f"at_s {event.at_s:g}: the run ends at duration_s = {duration_s:g}")
 
 
 def check_payloads(events: Iterable[Event], holds: bool = False) -> None:

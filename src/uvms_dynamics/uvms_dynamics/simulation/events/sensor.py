@@ -31,11 +31,14 @@ Size = Annotated[tuple[float, ...], BeforeValidator(_as_list), Field(min_length=
 """A number for all axes, or one for each; of an attitude the rotation about the body axes, rad."""
 
 
+KIND: Any = Field(description="what is wrong with it")
+
+
 class SensorEvent(LastingEvent):
     """A fault of one sensor."""
 
     sensor: str = Field(description="name of the sensor in the vehicle file, or `encoders`")
-    fault: str
+    fault: str = KIND
 
     def check(self, vehicle: Vehicle) -> None:
         """The sensor's name, and the size of the fault."""
@@ -118,32 +121,32 @@ class _OfSize(_OfQuantities):
 class SilentFault(_Delivery):
     """Nothing comes from the sensor."""
 
-    fault: Literal["silent"]
+    fault: Literal["silent"] = KIND
 
 
 class LatencyFault(_Delivery):
     """Samples come late, with the stamps of their measurement, and in order."""
 
-    fault: Literal["latency"]
+    fault: Literal["latency"] = KIND
     latency_s: float = Field(gt=0.0, le=60.0, description="how much later they come, s")
 
 
 class ZerosFault(_OfQuantities):
     """The sensor measures zero; an attitude is level and north."""
 
-    fault: Literal["zeros"]
+    fault: Literal["zeros"] = KIND
 
 
 class StuckFault(_OfQuantities):
     """The sensor repeats its last measurement with new stamps."""
 
-    fault: Literal["stuck"]
+    fault: Literal["stuck"] = KIND
 
 
 class BiasFault(_OfSize):
     """A constant error is added."""
 
-    fault: Literal["bias"]
+    fault: Literal["bias"] = KIND
     bias: Size = Field(description="the error in the unit of the signal, a number or one an axis")
 
     @property
@@ -155,7 +158,7 @@ class BiasFault(_OfSize):
 class NoiseFault(_OfSize):
     """White noise is added to that of the sensor."""
 
-    fault: Literal["noise"]
+    fault: Literal["noise"] = KIND
     std: Size = Field(description="its standard deviation in the unit of the signal")
 
     @property
@@ -167,7 +170,7 @@ class NoiseFault(_OfSize):
 class OutlierFault(_OfSize):
     """Some samples are far off: a normal error is added to them."""
 
-    fault: Literal["outliers"]
+    fault: Literal["outliers"] = KIND
     rate: float = Field(gt=0.0, le=1.0, description="share of the samples")
     std: Size = Field(description="standard deviation of the error in the unit of the signal")
 
@@ -180,7 +183,7 @@ class OutlierFault(_OfSize):
 class ScaleFault(_OfSize):
     """The measurement is multiplied by a factor; not an attitude."""
 
-    fault: Literal["scale"]
+    fault: Literal["scale"] = KIND
     scale: Size = Field(description="the factor, a number or one an axis; 1: none")
 
     def check(self, vehicle: Vehicle) -> None:

@@ -25,7 +25,7 @@ Draws = dict[str, Any]
 
 
 def _share(what: str) -> Any:
-    return Field(0.0, ge=0.0, le=MOST, description=f"{what}, relative")
+    return Field(0.0, ge=0.0, le=MOST, description=f"{what}; 0.2 is 20 %")
 
 
 class Mismatch(Config):
@@ -33,7 +33,7 @@ class Mismatch(Config):
 
     mass: float = _share(
         "mass and inertia of the hull, as by more or less water inside: weight in water and"
-        " righting moment stay"
+        " righting moment do not change"
     )
     added_mass: float = _share("added mass of the hull, each axis by itself")
     damping: float = _share(
