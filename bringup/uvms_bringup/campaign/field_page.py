@@ -20,6 +20,7 @@ NAMES = {
     "vehicle_error_m.end": "vehicle off at the end by",
     "end_effector_tracking_error_m.max": "tool off its path (estimate) by",
     "end_effector_tracking_error_m.end": "tool off its path (estimate) at the end by",
+    "end_effector_tracking_error_m.rms": "tool off its path (estimate), rms, by",
     "end_effector_error_m.max": "tool off its path by",
     "navigation_error_m.max": "estimate off by",
     "self_disturbance.moment_rms_nm": "self-disturbance, rms",
