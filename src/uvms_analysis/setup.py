@@ -30,6 +30,7 @@ setup(
     entry_points={
         "uvms.commands": [
             "check = uvms_analysis.commands.check:COMMAND",
+            "compare = uvms_analysis.commands.compare:COMMAND",
             "identify = uvms_analysis.commands.identify:COMMAND",
             "recover = uvms_analysis.commands.recover:COMMAND",
             "report = uvms_analysis.commands.report:COMMAND",

@@ -1,6 +1,7 @@
 """Bounds on the fields of a run's summary, and whether a run keeps them."""
 
 from collections.abc import Mapping
+from math import isnan
 from typing import Any
 
 from pydantic import Field, model_validator
@@ -50,7 +51,7 @@ class Bound(Config):
         if self.is_numeric:
             if isinstance(value, bool) or not isinstance(value, int | float):
                 return f"{name} is {_shown(value)}, and must be {self}"
-            if not self.excess(value) <= 0.0:  # a NaN keeps no bound
+            if isnan(value) or self.excess(value) > 0.0:
                 return f"{name} is {value:.4g}, and must be {self}"
         if "equals" in self.model_fields_set and not _same(value, self.equals):
             return f"{name} is {_shown(value)}, and must be {self}"

@@ -1,9 +1,9 @@
 """Runs on the workers of dask.distributed: those of this machine, or of a scheduler elsewhere."""
 
-import asyncio
 import logging
 import queue
 import signal
+import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
@@ -12,6 +12,7 @@ from typing import Any
 
 import dask
 from distributed import Client, Future, KilledWorker, LocalCluster
+from distributed.utils import get_mp_context
 
 from uvms_bringup.campaign.plan import Run
 from uvms_bringup.campaign.row import Row, row_of_fault
@@ -40,9 +41,10 @@ ONE_THREAD = {
 _SETTINGS: dict[str, Any] = {
     **ONE_THREAD,
     "distributed.scheduler.allowed-failures": DEATHS,
-    "distributed.worker.daemon": True,
-    "distributed.admin.log-format": "%(name)s: %(message)s",
+    "distributed.worker.multiprocessing-method": "forkserver",
 }
+PRELOADED = ("distributed", make_row.__module__, "uvms_bringup.campaign.preload")
+"""Imported once, by the server that the worker processes are forked from: it takes seconds."""
 
 
 class Cluster:
@@ -67,16 +69,17 @@ class Cluster:
         # Ctrl-C goes to all processes of the terminal; workers are stopped by their campaign.
         before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
         try:
-            with dask.config.set(_SETTINGS):
-                self._local = LocalCluster(
-                    n_workers=workers,
-                    threads_per_worker=1,
-                    processes=True,
-                    dashboard_address=None,
-                    memory_limit=0,
-                    silence_logs=logging.CRITICAL,
-                )
-                return Client(self._local)
+            dask.config.set(_SETTINGS)  # for good: a worker that is started again needs them, too
+            get_mp_context().set_forkserver_preload(list(PRELOADED))
+            self._local = LocalCluster(
+                n_workers=workers,
+                threads_per_worker=1,
+                processes=True,
+                dashboard_address=None,
+                memory_limit=0,
+                silence_logs=logging.CRITICAL,
+            )
+            return Client(self._local)
         finally:
             signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
@@ -89,7 +92,7 @@ class Cluster:
         if not self._address:
             return []
         try:
-            found = self._client.run(about)
+            found = self.call(about)
         except Exception as fault:  # whatever a foreign worker answers
             raise CampaignError(
                 f"scheduler {self._address}: its workers cannot run this program: {fault}"
@@ -103,6 +106,10 @@ class Cluster:
     def workers(self) -> Mapping[str, Any]:
         """What the scheduler knows about its workers, by address."""
         return self._client.scheduler_info(n_workers=-1)["workers"]
+
+    def call(self, work: Callable[[], Any]) -> dict[str, Any]:
+        """What a function returns in each worker, by the worker's address."""
+        return self._client.run(work)
 
     def rows(
         self, runs: Iterator[Run], folder: Path, logs: Logs, check: Callable[[], None]
@@ -171,14 +178,30 @@ class Cluster:
 
 
 def _connected(address: str) -> Client:
-    try:
-        with dask.config.set({"distributed.comm.timeouts.connect": PATIENCE_S}):
-            return Client(address, timeout=PATIENCE_S)
-    except (OSError, ValueError, asyncio.TimeoutError) as fault:
-        raise CampaignError(
-            f"--scheduler {address}: no scheduler answers there within {PATIENCE_S:g} s;"
-            " start one with `dask scheduler`, and its workers with `dask worker ADDRESS`"
-        ) from fault
+    """A client of the scheduler.
+
+    The connection is made in a thread that is given up when its time is over: dask goes on waiting
+    for a peer that takes the connection and says nothing.
+    """
+    found: list[Client] = []
+    faults: list[Exception] = []
+
+    def connect() -> None:
+        try:
+            found.append(Client(address, timeout=PATIENCE_S, set_as_default=False))
+        except Exception as fault:  # of the network, of the address, of dask
+            faults.append(fault)
+
+    thread = threading.Thread(target=connect, daemon=True)
+    thread.start()
+    thread.join(PATIENCE_S)
+    if found:
+        return found[0]
+    why = f": {faults[0]}" if faults else ""
+    raise CampaignError(
+        f"--scheduler {address}: no scheduler answers there within {PATIENCE_S:g} s{why}; start"
+        " one with `dask scheduler`, and its workers with `dask worker ADDRESS`"
+    )
 
 
 def _drained(done: "queue.SimpleQueue[Future]") -> list[Future]:

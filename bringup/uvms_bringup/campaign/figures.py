@@ -20,32 +20,49 @@ WIDE = 50.0
 
 
 def distribution(field: str, cases: dict, rows: list[Row]) -> Figure | None:
-    """Every run as a dot, the median as a bar, baselines' medians as marks, limits as lines.
-
-    None where no case has a number in this field.
-    """
-    limits = {
-        name: case["fields"][field] for name, case in cases.items() if field in case["fields"]
-    }
-    values = {name: _values(field, name, rows) for name in limits}
-    values = {name: one for name, one in values.items() if len(one[0])}
+    """The figure of one field; None where no case has a number in it."""
+    values = _by_case(field, cases, rows)
     if not values:
         return None
     figure = style.new_figure(MARGIN_IN + LINE_IN * len(values))
-    axes = figure.add_subplot()
-    marks = _marks(cases)
+    _draw(figure.add_subplot(), field, cases, rows)
+    return figure
+
+
+def picture(title: str, fields: list[str], cases: dict, rows: list[Row]) -> Figure:
+    """The distributions of all fields in one figure."""
+    counts = {field: len(_by_case(field, cases, rows)) for field in fields}
+    shown = {field: count for field, count in counts.items() if count}
+    heights = [MARGIN_IN + LINE_IN * count for count in shown.values()]
+    figure = style.new_figure(0.4 + sum(heights))
+    figure.suptitle(title, fontsize=10)
+    grid = figure.subplots(len(shown), 1, squeeze=False, height_ratios=heights)[:, 0]
+    for axes, field in zip(grid, shown, strict=True):
+        _draw(axes, field, cases, rows)
+    return figure
+
+
+def _by_case(field: str, cases: dict, rows: list[Row]) -> dict[str, tuple[np.ndarray, np.ndarray]]:
+    """Numbers (k,), and whether the runs passed (k,), of the cases that have any."""
+    names = [name for name, case in cases.items() if field in case["fields"]]
+    values = {name: _values(field, name, rows) for name in names}
+    return {name: one for name, one in values.items() if len(one[0])}
+
+
+def _draw(axes: Axes, field: str, cases: dict, rows: list[Row]) -> None:
+    """Every run as a dot, the median as a bar, baselines' medians as marks, limits as lines."""
+    values, marks = _by_case(field, cases, rows), _marks(cases)
     for line, (name, (numbers, passed)) in enumerate(values.items()):
         _line(axes, line, numbers, passed)
         for baseline, mark in marks.items():
             own, _ = _values(field, f"{name}/{baseline}", rows)
             if len(own):
                 axes.plot(np.median(own), line, mark, color="#777777", markersize=4, zorder=2)
-        _limits(axes, line, limits[name])
+        _limits(axes, line, cases[name]["fields"][field])
     _finish(axes, field, list(values), marks)
     everything = np.concatenate([numbers for numbers, _ in values.values()])
     if everything.min() > 0.0 and everything.max() > WIDE * np.median(everything):
         axes.set_xscale("log")
-    return figure
 
 
 def _values(field: str, case: str, rows: list[Row]) -> tuple[np.ndarray, np.ndarray]:

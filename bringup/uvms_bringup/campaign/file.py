@@ -72,6 +72,17 @@ class Case(Config):
     )
     seeds: Seeds | None = Field(None, description="number of seeds (1, 2, ...), or a list of them")
 
+    @field_validator("seeds", mode="before")
+    @classmethod
+    def _are_seeds(cls, given: Any) -> Any:
+        """One clear message, where pydantic has one for each kind of value."""
+        many = given if isinstance(given, list | tuple) else [given]
+        least = 0 if isinstance(given, list | tuple) else 1
+        good = all(type(one) is int and one >= least for one in many)
+        if given is not None and not (good and many and len(set(many)) == len(many)):
+            raise ValueError("write how many seeds (>= 1), or a list of seeds (>= 0), each once")
+        return given
+
     @field_validator("set", "vary", "draw")
     @classmethod
     def _leaves_the_rest(cls, values: dict[str, Any]) -> dict[str, Any]:

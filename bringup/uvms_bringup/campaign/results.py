@@ -11,6 +11,7 @@ from uvms_bringup.campaign.plan import Variant
 from uvms_bringup.campaign.row import Row
 from uvms_bringup.campaign.statistics import statistics, wilson
 from uvms_bringup.campaign.table import TABLE_FILE, write_table
+from uvms_bringup.errors import CampaignError
 
 SUMMARY_FILE = "summary.json"
 PAGE_FILE = "index.html"
@@ -72,6 +73,28 @@ class Results:
         text = json.dumps(summary, indent=2)
         (self.folder / SUMMARY_FILE).write_text(f"{text}\n", encoding="utf-8")
         write_page(self.folder / PAGE_FILE, summary, self.rows)
+
+    def draw(self, file: str) -> None:
+        """Draw the distributions of all required fields to an image file.
+
+        Raises:
+            CampaignError: the file cannot be written.
+        """
+        from uvms_analysis.report import style
+        from uvms_bringup.campaign.figures import picture
+
+        cases = self.summary()["cases"]
+        fields = list(dict.fromkeys(name for case in cases.values() for name in case["fields"]))
+        low, high = wilson(self.passed, len(self.judged))
+        title = (
+            f"{self.campaign.campaign}: {self.passed} of {len(self.judged)} runs passed"
+            f" ({100 * low:.0f} to {100 * high:.0f} %)"
+        )
+        try:
+            with style.settings():
+                picture(title, fields, cases, self.rows).savefig(file)
+        except (OSError, ValueError) as fault:
+            raise CampaignError(f"--picture {file}: cannot be written: {fault}") from fault
 
 
 def _with_their_cases(everything: Sequence[Variant], shown: Sequence[Variant]) -> list[Variant]:

@@ -38,6 +38,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         metavar="PATTERN",
         help="run only the cases whose name fits, as 'current*'; their baselines come with them",
     )
+    add("--picture", metavar="FILE", help="draw the distributions to this file (png, svg, pdf)")
     add(
         "--logs",
         choices=("none", "failed", "all"),
@@ -69,6 +70,8 @@ def run(options: Namespace) -> int:
     print(f"{campaign.campaign}: {campaign.description}\nresults in {folder}", flush=True)
     results, stopped = conduct.run(campaign, folder, options.command_line)
     print(text(results))
+    if options.picture and results.rows:
+        results.draw(options.picture)
     if stopped is not None:
         print(f"{stopped}; go on with --resume --output {folder}", file=sys.stderr)
         return stopped.exit_code

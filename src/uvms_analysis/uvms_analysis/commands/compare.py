@@ -1,0 +1,28 @@
+"""The command `uvms compare`: runs side by side."""
+
+from argparse import ArgumentParser, Namespace
+
+from uvms_core.command import Command
+
+
+def add_arguments(parser: ArgumentParser) -> None:
+    """Options of `uvms compare`."""
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="folders or logs of runs")
+    parser.add_argument(
+        "--output", default="compare", metavar="DIR", help="of figures and page (default: compare)"
+    )
+
+
+def run(options: Namespace) -> int:
+    """Print the fields that differ, and where the page with the figures is."""
+    from uvms_analysis.compare import compare
+    from uvms_analysis.compare.table import as_text
+    from uvms_analysis.errors import determine
+
+    found = determine(lambda: compare(options.runs, options.output))
+    print(as_text(found.names, found.rows))
+    print(f"page: {found.page}")
+    return 0
+
+
+COMMAND = Command("runs side by side: a table, and figures laid over", add_arguments, run)

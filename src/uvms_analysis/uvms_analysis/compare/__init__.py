@@ -1,0 +1,5 @@
+"""`uvms compare`: runs side by side, as a table of their summaries and as figures laid over."""
+
+from uvms_analysis.compare.compare import Compared, compare
+
+__all__ = ["Compared", "compare"]
