@@ -14,7 +14,7 @@ unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-run run test bench faults lint format clean
+.PHONY: help setup setup-run run test bench field faults lint format clean
 
 help: ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -27,6 +27,9 @@ test: setup ## set up, then run all tests (some of them: ARGS="tests/uvms_planne
 
 bench: setup ## set up, then measure speed and quality, one JSON object a line
 	@$(BIN)/python benchmarks/run.py $(ARGS)
+
+field: setup ## set up, then run the trial field (a quarter of an hour on 2 cores) and write docs/trial-field.md
+	@$(BIN)/python -m uvms_bringup.field $(ARGS)
 
 faults: setup ## set up, then run all fault tests, the long ones too, and write their table into docs/faults.md
 	@UVMS_FAULTS=long UVMS_FAULTS_TABLE=docs/faults.md $(BIN)/python -m pytest tests/faults $(ARGS)

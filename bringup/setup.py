@@ -17,6 +17,10 @@ setup(
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
         (f"share/{PACKAGE}/config/campaigns", sorted(glob("config/campaigns/*.yaml"))),
+        (
+            f"share/{PACKAGE}/config/campaigns/trial_field",
+            sorted(glob("config/campaigns/trial_field/*.*")),
+        ),
         (f"share/{PACKAGE}/config/scenarios", sorted(glob("config/scenarios/*.yaml"))),
         (f"share/{PACKAGE}/launch", sorted(glob("launch/*.*"))),
     ],

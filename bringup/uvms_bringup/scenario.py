@@ -2,6 +2,7 @@
 
 import re
 from collections.abc import Mapping, Sequence
+from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
@@ -144,7 +145,7 @@ def load_scenario(
     for setting in settings:
         _apply(data, setting)
     for place, value in (values or {}).items():
-        _put(data, place, value, place)
+        _put(data, place, deepcopy(value), place)  # later values go inside
     _make_absolute(data, Path())
     return validated(Scenario, data, f"scenario {path.name}", ScenarioError)
 

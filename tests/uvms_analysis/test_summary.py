@@ -11,7 +11,7 @@ from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.recover import recover
 from uvms_analysis.log.writer import LogWriter
-from uvms_analysis.summary import percentiles, rms_and_max, summarise
+from uvms_analysis.summary import at_end, percentiles, rms_and_max, summarise
 
 KNOWN = Known(duration=12.0, path_duration=10.0)
 
@@ -122,7 +122,7 @@ def test_a_broken_off_log_is_summed_up_as_far_as_it_goes(tmp_path, log_file, sum
 def test_an_empty_log_has_a_summary_of_nothing(tmp_path):
     LogWriter(tmp_path / "a.mcap").close()
     summary = summarise(tmp_path / "a.mcap", wall_s=0.0)
-    assert summary["end_effector_error_m"] == {"rms": None, "max": None}
+    assert summary["end_effector_error_m"] == {"rms": None, "max": None, "end": None}
     assert summary["real_time_factor"] is None
     assert summary["planner_step_ms"] == {"p50": None, "p99": None}
     assert json.loads(json.dumps(summary)) == summary
@@ -138,3 +138,16 @@ def test_statistics():
     assert rms_and_max(np.array([3.0, -4.0])) == {"rms": np.sqrt(12.5), "max": 4.0}
     assert rms_and_max(np.array([[3.0, 4.0], [0.0, 0.0]])) == {"rms": np.sqrt(12.5), "max": 5.0}
     assert percentiles(np.arange(101.0)) == {"p50": 50.0, "p99": 99.0}
+
+
+def test_the_end_of_a_run_is_its_last_five_seconds():
+    times = np.linspace(0.0, 20.0, 401)
+    settling = np.exp(-0.5 * times)
+    assert at_end(settling, times) == {"end": pytest.approx(np.exp(-7.5))}
+    vectors = np.zeros((401, 3))
+    vectors[300] = [3.0, 0.0, 4.0]
+    assert at_end(vectors, times) == {"end": 5.0}
+    vectors[300], vectors[299] = 0.0, 1.0
+    assert at_end(vectors, times) == {"end": 0.0}
+    assert at_end(settling[:50], times) == {"end": 1.0}
+    assert at_end(np.zeros((0, 3)), times) == {"end": None}

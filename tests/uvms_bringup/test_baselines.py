@@ -43,6 +43,18 @@ def test_a_scenario_file_may_have_words(tmp_path):
     assert scenario.observer.law == "none"
 
 
+def test_values_of_one_run_do_not_get_into_the_next():
+    shared = {"plant": {"initial_posture": "home"}, "control": {"observer": False}}
+    other = load_scenario(
+        "hover", values={**shared, "control.enabled": False, "plant.step_s": 0.01}
+    )
+    assert (other.control.enabled, other.plant.step_s) == (False, 0.01)
+    again = load_scenario("hover", values=shared)
+    assert again.control.enabled
+    assert again.plant.step_s != 0.01
+    assert shared == {"plant": {"initial_posture": "home"}, "control": {"observer": False}}
+
+
 @pytest.mark.parametrize(
     ("setting", "words"),
     [

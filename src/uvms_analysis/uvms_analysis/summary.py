@@ -42,6 +42,21 @@ def rms_and_max(values: Array) -> Metrics:
     return {"rms": float(np.sqrt(np.mean(lengths**2))), "max": float(np.max(lengths))}
 
 
+END_S = 5.0
+"""s; how long the end of a run is, by which one sees whether it has settled after what happened."""
+
+
+def at_end(values: Array, times: Array) -> Metrics:
+    """Greatest length of vectors (k, m), or of numbers (k,), among the last `END_S` of them.
+
+    The values are as far apart as the `times` (n,), s, and may be fewer.
+    """
+    if not len(values):
+        return {"end": None}
+    count = int(np.count_nonzero(times >= times[-1] - END_S))
+    return {"end": rms_and_max(values[-count:])["max"]}
+
+
 def percentiles(values: Array) -> Metrics:
     """Median and 99th percentile."""
     if not len(values):
@@ -150,7 +165,11 @@ def _seed(log: RunLog) -> int:
 
 def _precision(run: Analysis, figures: Figures) -> dict[str, Any]:
     def spread(name: str, work: Callable[[], Array]) -> Metrics:
-        return figures.of(name, lambda: rms_and_max(work()), {"rms": None, "max": None})
+        nothing = {"rms": None, "max": None, "end": None}
+        return figures.of(name, lambda: of(work()), nothing)
+
+    def of(values: Array) -> Metrics:
+        return rms_and_max(values) | at_end(values, run.truth.time)
 
     return {
         "end_effector_error_m": spread("end_effector_error_m", lambda: run.end_effector_error),

@@ -21,8 +21,13 @@ POWERS = {
     "_nm": 4,
     "_nm_s": 4,
     "_nm_rad": 4,
+    "_s_rad": 1,
 }
-"""Power of the length in a field, by the unit that its name ends with."""
+"""Power of the length in a field, by the unit that its name ends with.
+
+That of the end stops' dissipation is chosen so that the rate at which a stop takes energy from a
+joint, effort x dissipation / inertia, stays: a small copy then needs no shorter integration step.
+"""
 SECTIONS = ("hull", "thrusters", "arm")
 """What is scaled; of the sensors only the places are, and water and tether are the same."""
 PRODUCT = re.compile(r"[XYZKMN]_u[vwpqr]")
