@@ -38,7 +38,7 @@ def test_at_rest_the_self_disturbance_is_the_restoring_wrench():
 def test_it_is_restoring_where_the_motion_leads_plus_coupling_of_the_step():
     solver = solver_of()
     problem = problem_of(solver)
-    nu, nu_dot = body_motion(problem, INCREMENT)
+    nu, nu_dot = body_motion(problem.configuration, problem.previous, INCREMENT, problem.step)
     q, q_dot = START[4:] + INCREMENT[4:], INCREMENT[4:] / 0.5
     q_ddot = (INCREMENT[4:] - PREVIOUS[4:]) / 0.25
     level = yaw_quaternion(START[3] + INCREMENT[3])
@@ -56,7 +56,7 @@ def test_the_motion_of_a_step_is_that_of_the_body():
     turned = START.copy()
     turned[3] = 0.7
     problem = problem_of(solver, configuration=turned)
-    nu, nu_dot = body_motion(problem, INCREMENT)
+    nu, nu_dot = body_motion(problem.configuration, problem.previous, INCREMENT, problem.step)
     rate, bend = INCREMENT / 0.5, (INCREMENT - PREVIOUS) / 0.25
     end = turned + INCREMENT
     knot = Knot(0, end, rate, bend, INCREMENT)

@@ -106,9 +106,9 @@ def well_formed(signal: Any) -> tuple[Array, ...] | None:
     return values
 
 
-def checked_fields(kind: type) -> frozenset[str]:
-    """Names of the fields that `check` looks at."""
-    return frozenset(name for name, _ in _fields(kind)[0])
+def checked_fields(kind: type) -> tuple[str, ...]:
+    """Names of the fields that `check` looks at, in their order."""
+    return tuple(name for name, _ in _fields(kind)[0])
 
 
 def number(name: str, value: float) -> None:

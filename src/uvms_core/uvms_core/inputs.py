@@ -77,7 +77,12 @@ class Input(ABC):
 
     def take(self, stamp: int) -> Any:
         """The value for the tick; older ones are dropped."""
-        items, value = self._items, self.newest(stamp)
+        items = self._items
+        if items and items[-1][0] <= stamp:  # the usual case, which is quick
+            while len(items) > 1:
+                items.popleft()
+            return items[0][1]
+        value = self.newest(stamp)
         while len(items) > 1 and items[1][0] <= stamp:
             items.popleft()
         return value

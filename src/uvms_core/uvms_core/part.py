@@ -160,12 +160,13 @@ class InProcess:
 
     def is_usable(self, topic: Topic, signal: Any) -> bool:
         """Whether who reads a part's output outside, as the plant does, may use it."""
+        plausibility = self._plausibility
+        if plausibility is None or plausibility.follows(topic, signal):
+            return True
         return not self._is_refused(topic, signal, is_checked=True)
 
     def _is_refused(self, topic: Topic, signal: Any, is_checked: bool = False) -> bool:
         if self._plausibility is None:
-            return False
-        if is_checked and self._plausibility.follows(topic, signal):
             return False
         try:
             self._plausibility.admit(topic, signal, is_checked)
@@ -212,7 +213,7 @@ class InProcess:
         rules = self._rules.get(topic.name)
         if rules is None:
             return
-        if self._is_refused(topic, signal, is_checked=True):
+        if not self.is_usable(topic, signal):
             self._excuse(topic, signal.stamp)
             return
         for rule in rules:

@@ -3,32 +3,31 @@
 import numpy as np
 
 from uvms_dynamics import coupling_wrench, restoring_wrench
-from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.jit import inner, kernel, shared
 from uvms_planner.constraints import attitude_violation
 from uvms_planner.problem import VEHICLE, configuration_after, yaw_quaternion
 from uvms_planner.projection import project, within_tolerance
 
 
 @inner
-def body_motion(problem, increment):
-    """Nu (6,) and nu_dot (6,), body frame, of the level vehicle under an increment.
+def body_motion(configuration, previous, increment, h):
+    """Nu (6,) and nu_dot (6,), body frame, of the level vehicle under an increment in h s.
 
     Rates are the increment over the step, accelerations its change from the step before:
     nu = R^T p_dot, nu_dot = R^T p_ddot - omega x nu.
     """
-    h = problem.step
-    yaw = problem.configuration[3] + increment[3]
+    yaw = configuration[3] + increment[3]
     c, s = np.cos(yaw), np.sin(yaw)
     nu, nu_dot = np.zeros(6), np.zeros(6)
     x, y = increment[0] / h, increment[1] / h
     nu[0], nu[1], nu[2] = c * x + s * y, -s * x + c * y, increment[2] / h
     nu[5] = increment[3] / h
-    x = (increment[0] - problem.previous[0]) / h**2
-    y = (increment[1] - problem.previous[1]) / h**2
+    x = (increment[0] - previous[0]) / h**2
+    y = (increment[1] - previous[1]) / h**2
     nu_dot[0] = c * x + s * y + nu[5] * nu[1]
     nu_dot[1] = -s * x + c * y - nu[5] * nu[0]
-    nu_dot[2] = (increment[2] - problem.previous[2]) / h**2
-    nu_dot[5] = (increment[3] - problem.previous[3]) / h**2
+    nu_dot[2] = (increment[2] - previous[2]) / h**2
+    nu_dot[5] = (increment[3] - previous[3]) / h**2
     return nu, nu_dot
 
 
@@ -40,17 +39,23 @@ def self_disturbance(model, problem, increment, lookahead):
     `lookahead` s after the step if they kept their rate; the coupling wrench at the step, in still
     water.
     """
-    h = problem.step
-    nu, nu_dot = body_motion(problem, increment)
+    return _wrenches(
+        model, problem.configuration, problem.previous, increment, problem.step, lookahead
+    )
+
+
+@shared
+def _wrenches(model, configuration, previous, increment, h, lookahead):
+    nu, nu_dot = body_motion(configuration, previous, increment, h)
     q, ahead = np.empty(increment.shape[0] - VEHICLE), np.empty(increment.shape[0] - VEHICLE)
     q_dot, q_ddot = np.empty_like(q), np.empty_like(q)
     for i in range(q.shape[0]):
         j = VEHICLE + i
-        q[i] = problem.configuration[j] + increment[j]
+        q[i] = configuration[j] + increment[j]
         q_dot[i] = increment[j] / h
-        q_ddot[i] = (increment[j] - problem.previous[j]) / h**2
+        q_ddot[i] = (increment[j] - previous[j]) / h**2
         ahead[i] = q[i] + lookahead * q_dot[i]
-    level = yaw_quaternion(problem.configuration[3] + increment[3])
+    level = yaw_quaternion(configuration[3] + increment[3])
     restoring = restoring_wrench(model, level, ahead)
     coupling = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
     wrenches = np.zeros(12)
@@ -60,14 +65,14 @@ def self_disturbance(model, problem, increment, lookahead):
 
 
 @inner
-def judged_disturbance(model, problem, increment):
+def judged_disturbance(model, configuration, previous, increment, h, lookahead, combined):
     """Residuals (12,) of a candidate's self-disturbance; their squares add up to its cost.
 
-    F_dis and zeros, as eq. (18) is printed, where the problem is `combined`; else restoring and
+    F_dis and zeros, as eq. (18) is printed, where `combined`; else restoring and
     coupling wrench on their own: in the sum a jerk of the arm would pay for a weight that stays.
     """
-    wrenches = self_disturbance(model, problem, increment, problem.lookahead)
-    if problem.combined:
+    wrenches = _wrenches(model, configuration, previous, increment, h, lookahead)
+    if combined:
         for i in range(6):
             wrenches[i] += wrenches[6 + i]
             wrenches[6 + i] = 0.0
@@ -77,14 +82,24 @@ def judged_disturbance(model, problem, increment):
 @inner
 def cost(model, problem, increment):
     """Sum of the squared self-disturbance, eq. (18), and what motion and change of rate cost."""
-    total = 0.0
-    for value in judged_disturbance(model, problem, increment):
+    total, previous = 0.0, problem.previous
+    for value in judged_disturbance(
+        model,
+        problem.configuration,
+        previous,
+        increment,
+        problem.step,
+        problem.lookahead,
+        problem.combined,
+    ):
         total += value**2
+    reach, jump = problem.reach, problem.jump
+    motion_weights, smoothness_weight = problem.motion_weights, problem.smoothness_weight
     for i in range(increment.shape[0]):
-        if problem.reach[i] > 0.0:
-            change = (increment[i] - problem.previous[i]) / problem.jump[i]
-            total += problem.smoothness_weight * change**2
-            total += problem.motion_weights[i] * (increment[i] / problem.reach[i]) ** 2
+        if reach[i] > 0.0:
+            change = (increment[i] - previous[i]) / jump[i]
+            total += smoothness_weight * change**2
+            total += motion_weights[i] * (increment[i] / reach[i]) ** 2
     return total
 
 
@@ -97,6 +112,6 @@ def judge(model, problem, increment):
     distance, angle = project(model, problem, increment)
     if not within_tolerance(problem, distance, angle):
         return False, np.inf, np.inf
-    q = configuration_after(problem, increment)[VEHICLE:]
+    q = configuration_after(problem.configuration, increment)[VEHICLE:]
     violation = attitude_violation(model, problem, q)
     return True, violation, cost(model, problem, increment)

@@ -20,7 +20,7 @@ def knot_motion(model, problem, increment, tool_rate, tool_acceleration):
     acceleration (6,): J c_dot = y_dot and J c_ddot + J_dot c_dot = y_ddot.
     """
     h = problem.step
-    end = configuration_after(problem, increment)
+    end = configuration_after(problem.configuration, increment)
     rate, acceleration = np.empty_like(end), np.empty_like(end)
     for i in range(end.shape[0]):
         rate[i] = (3 * increment[i] - problem.previous[i]) / (2 * h)

@@ -42,11 +42,15 @@ class StepProblem(NamedTuple):
 
 
 @inner
-def configuration_after(problem, increment):
-    """The configuration c (m,) at the end of the step."""
+def configuration_after(configuration, increment):
+    """The configuration c (m,) at the end of a step.
+
+    numba counts the references of all arrays of a tuple that it hands on; functions that are called
+    for every candidate, as this one, take what they need of a `StepProblem` instead.
+    """
     end = np.empty(increment.shape[0])
     for i in range(increment.shape[0]):
-        end[i] = problem.configuration[i] + increment[i]
+        end[i] = configuration[i] + increment[i]
     return end
 
 

@@ -58,15 +58,15 @@ def rotation_error(desired, actual):
 
 
 @inner
-def tool_error(model, problem, increment, error):
-    """Fill `error` (6,) with desired minus actual pose; return (m, rad) distances."""
-    position, rotation = tool_pose(model, configuration_after(problem, increment))
+def tool_error(model, configuration, desired, desired_rotation, oriented, error):
+    """Fill `error` (6,) with desired minus actual pose at c (m,); return (m, rad) distances."""
+    position, rotation = tool_pose(model, configuration)
     for i in range(3):
-        error[i] = problem.position[i] - position[i]
+        error[i] = desired[i] - position[i]
     distance = np.sqrt(error[0] ** 2 + error[1] ** 2 + error[2] ** 2)
-    if not problem.oriented:
+    if not oriented:
         return distance, 0.0
-    turn = rotation_error(problem.rotation, rotation)
+    turn = rotation_error(desired_rotation, rotation)
     for i in range(3):
         error[3 + i] = turn[i]
     return distance, np.sqrt(error[3] ** 2 + error[4] ** 2 + error[5] ** 2)
@@ -106,43 +106,47 @@ def weighted_step(jacobian, error, readiness, free, damping, equations, step):
 @kernel
 def project(model, problem, increment):
     """Move `increment` (m,) within its bounds onto the path, in place; return (m, rad) errors."""
+    lower, upper, readiness = problem.lower, problem.upper, problem.readiness
+    start, oriented, damping = problem.configuration, problem.oriented, problem.damping
     size = increment.shape[0]
-    equations = 6 if problem.oriented else 3
+    equations = 6 if oriented else 3
     error, step = np.zeros(6), np.zeros(size)
     free = np.zeros(size, dtype=np.bool_)
     for i in range(size):
-        increment[i] = min(max(increment[i], problem.lower[i]), problem.upper[i])
-    distance, angle = tool_error(model, problem, increment, error)
+        increment[i] = min(max(increment[i], lower[i]), upper[i])
+    end = configuration_after(start, increment)
+    distance, angle = tool_error(model, end, problem.position, problem.rotation, oriented, error)
     for _ in range(problem.iterations):
         if distance < CONVERGED_M and angle < CONVERGED_RAD:
             break
-        jacobian = configuration_jacobian(model, configuration_after(problem, increment))
+        jacobian = configuration_jacobian(model, end)
         for i in range(size):
-            free[i] = problem.readiness[i] > 0.0
+            free[i] = readiness[i] > 0.0
         for _pass in range(size):
-            weighted_step(
-                jacobian, error, problem.readiness, free, problem.damping, equations, step
-            )
-            if not _release_blocked(problem, increment, step, free):
+            weighted_step(jacobian, error, readiness, free, damping, equations, step)
+            if not _release_blocked(increment, step, free, lower, upper):
                 break
         for i in range(size):
             moved = increment[i] + step[i]
-            increment[i] = min(max(moved, problem.lower[i]), problem.upper[i])
-        distance, angle = tool_error(model, problem, increment, error)
-        if not problem.oriented and _shift(problem, increment, error):
+            increment[i] = min(max(moved, lower[i]), upper[i])
+        end = configuration_after(start, increment)
+        distance, angle = tool_error(
+            model, end, problem.position, problem.rotation, oriented, error
+        )
+        if not oriented and _shift(increment, error, readiness, lower, upper):
             return 0.0, 0.0
     return distance, angle
 
 
 @inner
-def _shift(problem, increment, error):
+def _shift(increment, error, readiness, lower, upper):
     """Take what a Newton step left of a position error by moving the vehicle, where it may.
 
     The tool's position is linear in x, y, z, so that this removes the second-order rest exactly.
     """
     for i in range(3):
         moved = increment[i] + error[i]
-        if problem.readiness[i] <= 0.0 or not problem.lower[i] <= moved <= problem.upper[i]:
+        if readiness[i] <= 0.0 or not lower[i] <= moved <= upper[i]:
             return False
     for i in range(3):
         increment[i] += error[i]
@@ -150,14 +154,14 @@ def _shift(problem, increment, error):
 
 
 @inner
-def _release_blocked(problem, increment, step, free):
+def _release_blocked(increment, step, free, lower, upper):
     """Take variables out of `free` that sit at a bound and would be pushed beyond it."""
     changed = False
     for i in range(increment.shape[0]):
         if not free[i]:
             continue
-        beyond_upper = step[i] > 0.0 and increment[i] >= problem.upper[i]
-        beyond_lower = step[i] < 0.0 and increment[i] <= problem.lower[i]
+        beyond_upper = step[i] > 0.0 and increment[i] >= upper[i]
+        beyond_lower = step[i] < 0.0 and increment[i] <= lower[i]
         if beyond_upper or beyond_lower:
             free[i] = False
             changed = True

@@ -23,16 +23,18 @@ def normal_equations(model, problem, increment, hessian, gradient):
     The residuals are the self-disturbance (twelve, differentiated numerically) and the weighted
     motion and change of motion of every variable (linear).
     """
-    size = increment.shape[0]
-    wrench = judged_disturbance(model, problem, increment)
+    size, reach = increment.shape[0], problem.reach
+    start, previous, h = problem.configuration, problem.previous, problem.step
+    lookahead, combined = problem.lookahead, problem.combined
+    wrench = judged_disturbance(model, start, previous, increment, h, lookahead, combined)
     slope = np.zeros((12, size))
     for i in range(size):
-        if problem.reach[i] <= 0.0:
+        if reach[i] <= 0.0:
             continue
-        delta = DIFFERENCE * problem.reach[i]
+        delta = DIFFERENCE * reach[i]
         kept = increment[i]
         increment[i] = kept + delta
-        moved = judged_disturbance(model, problem, increment)
+        moved = judged_disturbance(model, start, previous, increment, h, lookahead, combined)
         increment[i] = kept
         for a in range(12):
             slope[a, i] = (moved[a] - wrench[a]) / delta
@@ -109,8 +111,9 @@ def refine(model, problem, increment, violation, cost, rounds):
     judged = 0
     for _ in range(rounds):
         normal_equations(model, problem, increment, hessian, gradient)
-        tool_error(model, problem, increment, error)
-        jacobian = configuration_jacobian(model, configuration_after(problem, increment))
+        end = configuration_after(problem.configuration, increment)
+        tool_error(model, end, problem.position, problem.rotation, problem.oriented, error)
+        jacobian = configuration_jacobian(model, end)
         if not constrained_step(problem, increment, hessian, gradient, jacobian, error, step):
             break
         improved, share = False, 1.0

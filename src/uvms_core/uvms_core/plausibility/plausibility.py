@@ -6,9 +6,7 @@ from typing import Any
 from uvms_core import checks
 from uvms_core.errors import ImplausibleError, SignalError
 from uvms_core.plausibility.bounds import bounds_of
-from uvms_core.plausibility.rule import Rule
 from uvms_core.plausibility.watch import Watch
-from uvms_core.signals import Array
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
 
@@ -18,9 +16,7 @@ class Plausibility:
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._vehicle = vehicle
-        self._rules: dict[str, Rule] = {}
         self._watches: dict[str, Watch] = {}
-        self._checked: dict[str, tuple[Any, Array]] = {}  # newest output, and its values
 
     def reset(self) -> None:
         """Forget all samples: time or place starts over."""
@@ -36,9 +32,7 @@ class Plausibility:
         Raises:
             ImplausibleError: a value, or its jump from the last sample, is not possible.
         """
-        watch = self._watches.get(topic.name)
-        if watch is None:
-            watch = self._watches[topic.name] = Watch(self._rule(topic))
+        watch = self._watches.get(topic.name) or self._watch(topic)
         fault = watch.fault(signal.stamp, signal, is_checked)
         if fault is not None:
             raise ImplausibleError(f"{topic.name}: {fault}")
@@ -52,10 +46,8 @@ class Plausibility:
 
         Quick; where it is False, `admit` decides.
         """
-        watch, checked = self._watches.get(topic.name), self._checked.get(topic.name)
-        if watch is None or checked is None or checked[0] is not signal:
-            return False
-        return watch.follows(signal.stamp, checked[1], signal)
+        watch = self._watches.get(topic.name)
+        return watch is not None and watch.follows(signal)
 
     def are_good(self, topic: Topic, signals: Sequence[Any]) -> bool:
         """Take several samples in a row if all are certainly good; else none of them."""
@@ -64,17 +56,17 @@ class Plausibility:
 
     def fault(self, topic: Topic, signal: Any) -> str | None:
         """Why a signal must not go out, in words; None where it may, which marks it as checked."""
-        rule = self._rules.get(topic.name) or self._rule(topic)
-        if rule.covers(type(signal)) and checks.well_formed(signal) is not None:
-            x = rule.flat(signal)
-            if rule.is_possible(x):  # and finite, all of it
+        watch = self._watches.get(topic.name) or self._watch(topic)
+        if watch.rule.covers(type(signal)):
+            values = checks.well_formed(signal)
+            if values is not None and watch.is_possible(signal, values):  # and finite, all of it
                 checks.trust(signal)
-                self._checked[topic.name] = signal, x
                 return None
-        return self._explain(topic, rule, signal)
+        return self._explain(topic, watch, signal)
 
-    def _explain(self, topic: Topic, rule: Rule, signal: Any) -> str | None:
+    def _explain(self, topic: Topic, watch: Watch, signal: Any) -> str | None:
         """As `fault`, where the quick test of all values at once has left something open."""
+        rule = watch.rule
         try:
             checks.check(topic.name, signal)
         except SignalError as fault:
@@ -82,16 +74,13 @@ class Plausibility:
         if not rule.bounds:
             return None
         if rule.is_flat:
-            x = rule.flat(signal)
-            self._checked[topic.name] = signal, x
-            if rule.is_possible(x):
+            if watch.is_possible(signal, rule.values(signal)):
                 return None
         elif rule.are_possible(signal):
             return None
         text = rule.explain(signal)
         return text and f"{topic.name}: {text}"
 
-    def _rule(self, topic: Topic) -> Rule:
-        if topic.name not in self._rules:
-            self._rules[topic.name] = bounds_of(self._vehicle, topic)
-        return self._rules[topic.name]
+    def _watch(self, topic: Topic) -> Watch:
+        watch = self._watches[topic.name] = Watch(bounds_of(self._vehicle, topic))
+        return watch

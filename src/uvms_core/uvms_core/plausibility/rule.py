@@ -80,9 +80,8 @@ class Rule:
         self.is_flat = all(bound.size for bound in bounds) and bool(bounds)
         if not self.is_flat:
             self._by_field = [
-                (bound.field, 0.5 * (high + low), 2.0 / (high - low))
+                (bound.field, 0.5 * (high + low), 2.0 / (high - low), bound.only_if)
                 for bound in bounds
-                if not bound.only_if
                 for low, high in [(np.asarray(bound.low), np.asarray(bound.high))]
             ]
             return
@@ -109,25 +108,34 @@ class Rule:
 
     def flat(self, signal: Any) -> Array:
         """The values of a signal as one array."""
+        return self.strung(self.values(signal))
+
+    def values(self, signal: Any) -> Sequence[Any]:
+        """The bounded fields of a signal."""
         values: Any = self._get(signal)
-        if self._single:
-            is_vector = type(values) is np.ndarray and values.ndim == 1  # the usual case
-            return values if is_vector else np.atleast_1d(values).ravel()
-        if self._scalar:
-            return np.array(values, dtype=np.float64)
+        return (values,) if self._single else values
+
+    def strung(self, values: Sequence[Any]) -> Array:
+        """The values of all bounded fields, in their order, as one array."""
         if self._straight:
             return np.concatenate(values)
+        if self._scalar:
+            return np.array(values, dtype=np.float64).ravel()
+        if self._single:
+            value = values[0]
+            return value if value.ndim == 1 else value.ravel()
         return np.concatenate([value.ravel() for value in values])
 
     def covers(self, kind: type) -> bool:
-        """Whether it bounds, by one flat array, every value that a class of signals is checked for.
+        """Whether it bounds, in one flat array, just what a class of signals is checked for.
 
-        What is within bounds is finite too.
+        Then what is within bounds is finite too, and `checks.well_formed` gives what to string
+        together.
         """
         found = self._covered.get(kind)
         if found is None:
-            bounded = {bound.field for bound in self.bounds}
-            found = self._covered[kind] = self.is_flat and checks.checked_fields(kind) <= bounded
+            bounded = tuple(bound.field for bound in self.bounds)
+            found = self._covered[kind] = self.is_flat and checks.checked_fields(kind) == bounded
         return found
 
     @property
@@ -149,9 +157,9 @@ class Rule:
 
     def are_possible(self, signal: Any) -> bool:
         """Whether the fields of a signal of no fixed size are certainly within their bounds."""
-        if any(bound.only_if for bound in self.bounds):
-            return False
-        for field, middle, scale in self._by_field:
+        for field, middle, scale, only_if in self._by_field:
+            if only_if and not getattr(signal, only_if):
+                continue
             y = (getattr(signal, field) - middle) * scale
             if not np.vdot(y, y) <= 1.0:
                 return False

@@ -24,12 +24,14 @@ class Watch:
     """Looks at the samples of one topic in the order of their stamps."""
 
     def __init__(self, rule: Rule) -> None:
-        self._rule = rule
+        self.rule = rule
+        """Bounds of the topic."""
         self.reset()
 
     def reset(self) -> None:
         """Forget all samples: what comes next may be anywhere."""
         self._last: Sample | None = None
+        self._checked: tuple[Any, Array] | None = None
         self._refused: Sample | None = None
         self._agreeing = 0
         self.news: str | None = None
@@ -40,7 +42,7 @@ class Watch:
 
         Where it `is_checked`, its values are known to be within their bounds.
         """
-        rule = self._rule
+        rule = self.rule
         if is_checked and not rule.jumps:
             return None
         if not rule.is_flat:
@@ -67,12 +69,23 @@ class Watch:
         self._last, self._refused = sample, None
         return None
 
-    def follows(self, stamp: int, x: Array, signal: Any) -> bool:
-        """Whether values within their bounds certainly follow the last ones; takes them then."""
-        last = self._last
-        if last is None or stamp <= last[0]:
+    def is_possible(self, signal: Any, values: Sequence[Any]) -> bool:
+        """Whether a signal with these fields is within its bounds; it is remembered then."""
+        x = self.rule.strung(values)
+        if not self.rule.is_possible(x):
             return False
-        y = (x - last[1]) * self._rule.inverse(stamp - last[0])
+        self._checked = signal, x
+        return True
+
+    def follows(self, signal: Any) -> bool:
+        """Whether the signal that is remembered certainly follows the last one; takes it then."""
+        last, checked = self._last, self._checked
+        if last is None or checked is None or checked[0] is not signal:
+            return False
+        stamp, x = signal.stamp, checked[1]
+        if stamp <= last[0]:
+            return False
+        y = (x - last[1]) * self.rule.inverse(stamp - last[0])
         if not y.dot(y) <= 1.0:
             return False
         self._last, self._refused = (stamp, x, signal), None
@@ -94,7 +107,7 @@ class Watch:
 
         One product for all of them; where it does not hold they are to be looked at one by one.
         """
-        rule, last = self._rule, self._last
+        rule, last = self.rule, self._last
         if last is None or not rule.is_quick:
             return False
         stamps = [last[0], *(signal.stamp for signal in signals)]
@@ -120,7 +133,7 @@ class Watch:
 
     def _jump(self, before: Sample, now: Sample) -> str | None:
         """The first value that changed more than it can; None where there is none."""
-        rule, elapsed = self._rule, now[0] - before[0]
+        rule, elapsed = self.rule, now[0] - before[0]
         if elapsed <= 0:
             return None
         if rule.step_fault is not None:
