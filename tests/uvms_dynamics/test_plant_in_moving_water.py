@@ -24,6 +24,7 @@ from uvms_dynamics.simulation import (
     make_system,
     simulate,
 )
+from uvms_dynamics.simulation.integrator import advance, make_scratch, with_vehicle
 from uvms_dynamics.simulation.plant.operating_points import operating_points
 from uvms_dynamics.simulation.water import CurrentConfig
 from uvms_dynamics.simulation.water.tables import greatest_speed
@@ -239,6 +240,22 @@ def test_a_simulation_goes_on_where_another_ended():
     np.testing.assert_allclose(then, whole[150:], atol=1e-10)
     with pytest.raises(ConfigError, match="its water moves; advance_batch knows constant"):
         advance_batch(system, x[None], idle[0][None], idle[1][None], 0.01, 1)
+
+
+def test_a_vehicle_that_changes_in_waves_is_another_vehicle():
+    """As with a load: the old scratch tables, the new bodies."""
+    data = REFERENCE.model_dump(mode="json")
+    data["arm"]["links"][-1].update(mass_kg=4.0, volume_m3=0.003)
+    data["hull"]["volume_m3"] *= 1.01
+    heavier, system = vehicle_from_data(data), make_system(REFERENCE, ALL)
+    x = make_state(np.full(4, 0.4), REFERENCE.n_thrusters, position=(0.0, 0.0, 5.0))
+    scratch, states = make_scratch(system), np.empty((51, len(x)))
+    thrust, effort = np.zeros(REFERENCE.n_thrusters), np.zeros(4)
+    other = with_vehicle(system, heavier)
+    advance(other, x.copy(), thrust, effort, 0.01, scratch, states, states.copy(), 2.0)
+    fresh = simulate(make_system(heavier, ALL), x, thrust, effort, 0.01, 50, start_s=2.0)
+    np.testing.assert_array_equal(states, fresh)
+    np.testing.assert_array_equal(other.water.hull, make_system(heavier, ALL).water.hull)
 
 
 WAVE = WAVES[0]

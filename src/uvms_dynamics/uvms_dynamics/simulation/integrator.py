@@ -32,7 +32,7 @@ from uvms_dynamics.simulation.tether import load_wrench, tether_load
 from uvms_dynamics.simulation.thrusters import Thrusters, build_thrusters, thrust_rate
 from uvms_dynamics.simulation.water import CurrentConfig, Water, build_water
 from uvms_dynamics.simulation.water.stream import apparent_down, carried, stream_of
-from uvms_dynamics.simulation.water.waves import spread_waves
+from uvms_dynamics.simulation.water.waves import spread_waves, take_bodies
 
 POSITION, QUATERNION, VELOCITY, JOINTS = np.array([0, 3, 7, 13])
 """Where each part of the state begins; q_dot at JOINTS + n, thrust at JOINTS + 2n."""
@@ -87,6 +87,15 @@ def make_system(
     )
 
 
+def with_vehicle(system: System, vehicle: Vehicle) -> System:
+    """The system with the bodies of another vehicle with as many joints, in the same flow.
+
+    The thrusters stay as they are. A scratch of the system serves for this one, too.
+    """
+    water = None if system.water is None else system.water.around(vehicle)
+    return system._replace(model=build_model(vehicle), water=water)
+
+
 def make_state(
     q: Sequence[float],
     m: int,
@@ -124,6 +133,7 @@ def advance(system, x, thrust_command, effort, step, scratch, states, rates, tim
         raise ValueError("x, scratch and the rows of states and rates need 13 + 2n + m values")
     if rates.shape[0] != states.shape[0] or not step >= 0.0:
         raise ValueError("states and rates need as many rows, and step must be >= 0")
+    take_bodies(water, wet)
     for s in range(last + 1):
         now = time + s * step
         derivative(

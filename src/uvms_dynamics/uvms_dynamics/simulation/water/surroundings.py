@@ -29,6 +29,13 @@ class Surroundings(NamedTuple):
     hull: Array  # (4,) displaced mass and centre of buoyancy of the hull
 
 
+def frame_velocity(system: System, time: float) -> Array:
+    """Velocity (3,) in the world of the frame that nu_r is relative to, at a time, s."""
+    if system.water is None:
+        return system.current
+    return system.current + stream_at(system.water, np.array([time]))[0, :3]
+
+
 def surroundings(system: System, x: Array, time: float) -> Surroundings | None:
     """Of the integrator's state x (nx,) at a time, s; None in a constant current."""
     water = system.water

@@ -36,6 +36,11 @@ class Water(NamedTuple):
     waves: Array | None  # (., 7): k, omega, direction (2), phase, amplitude, depth
     bodies: Array | None  # (n + 1, .), see `kernels.waves`
 
+    def around(self, vehicle: Vehicle) -> "Water":
+        """The same flow around another vehicle."""
+        bodies = None if self.bodies is None else build_wet_bodies(vehicle)
+        return self._replace(hull=_displaced(vehicle), bodies=bodies)
+
 
 def build_water(vehicle: Vehicle, current: CurrentConfig) -> Water | None:
     """Tables of moving water around a vehicle; None where only the constant current flows."""
@@ -45,15 +50,20 @@ def build_water(vehicle: Vehicle, current: CurrentConfig) -> Water | None:
     gusts = [_gust(gust) for gust in current.gusts]
     if not (harmonics or gusts or waves):
         return None
-    hull, density = vehicle.hull, vehicle.environment.water_density_kg_m3
     return Water(
         gravity,
-        np.array([density * hull.volume_m3, *hull.cb_m]),
+        _displaced(vehicle),
         np.reshape(harmonics, (-1, 7)).astype(float),
         np.reshape(gusts, (-1, 6)).astype(float),
         np.array(waves) if waves else None,
         build_wet_bodies(vehicle) if waves else None,
     )
+
+
+def _displaced(vehicle: Vehicle) -> Array:
+    """Mass of the water that the hull displaces, and its centre of buoyancy (4,)."""
+    hull, density = vehicle.hull, vehicle.environment.water_density_kg_m3
+    return np.array([density * hull.volume_m3, *hull.cb_m])
 
 
 def velocity_at_start(current: CurrentConfig) -> Array:

@@ -105,6 +105,23 @@ def spread_waves(model, water, wet, work, n, place, quat, carried, time):
     """Set the flow in `wet` to that at each body; the workspace holds the joints' angles."""
 
 
+def take_bodies(water, wet):
+    """Set what the bodies are to the water in `wet`: the vehicle may be another than before."""
+
+
+@overload(take_bodies, jit_options=OPTIONS)
+def _take_bodies(water, wet):
+    if isinstance(wet, types.NoneType):
+        return lambda water, wet: None
+    return _copy_bodies
+
+
+def _copy_bodies(water, wet):
+    for i in range(wet.shape[0]):
+        for k in range(FLOW):
+            wet[i, k] = water.bodies[i, k]
+
+
 @overload(spread_waves, jit_options=OPTIONS)
 def _spread_waves(model, water, wet, work, n, place, quat, carried, time):
     if isinstance(wet, types.NoneType):
