@@ -31,7 +31,7 @@ DeadZone = Annotated[
 Numbers = tuple[float, ...]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ThrustTable:
     """A curve as points: each half's commands, and thrusts that grow in size from point to point.
 
