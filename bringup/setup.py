@@ -26,8 +26,8 @@ setup(
     ],
     install_requires=[
         "annotated-types>=0.5",
-        "dask>=2024.8",
-        "distributed>=2024.8",
+        "dask>=2025.7",
+        "distributed>=2025.7",
         "matplotlib>=3.8",
         "numpy>=1.26",
         "pyarrow>=15",

@@ -19,8 +19,9 @@ from uvms_bringup.campaign.row import Row, row_of_fault
 from uvms_bringup.campaign.worker import Logs, about, make_row
 from uvms_bringup.errors import CampaignError
 
-PATIENCE_S = 8.0
-"""How long a scheduler elsewhere may take to answer, s."""
+PATIENCE_S = 6.0
+"""How long a scheduler elsewhere may take to answer, s; with what has to be imported before, a user
+waits for less than 10 s."""
 
 POLL_S = 0.2
 """How often a campaign looks whether it has been stopped, s."""

@@ -52,6 +52,7 @@ class Conduct:
                 was computed by then stays in the folder.
         """
         chosen = variants(campaign, self.select)
+        self._try_scheduler()
         digests = check_variants(campaign.campaign, chosen)
         claim = _claimed(folder, command)
         try:
@@ -65,6 +66,14 @@ class Conduct:
             return results, stopped
         finally:
             claim.release()
+
+    def _try_scheduler(self) -> None:
+        """Find out at once whether it is there: checking many cases takes a while."""
+        if self.scheduler:
+            from uvms_bringup.campaign.cluster import Cluster
+
+            with Cluster(0, self.scheduler):
+                pass
 
     def _journal(self, campaign: Campaign, digests: dict[str, str], folder: Path) -> Journal:
         journal = Journal(folder)
