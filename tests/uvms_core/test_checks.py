@@ -115,3 +115,37 @@ def test_stamps_increase_and_are_not_old():
     for stamp, now in ((0, 500_000_001), (1, 0)):
         with pytest.raises(SignalError, match="it must lie within"):
             checks.age("x", stamp, now)
+
+
+DAMAGES = {
+    "none": lambda x: x,
+    "float32": lambda x: x.astype(np.float32),
+    "list": lambda x: x.tolist(),
+    "subclass": lambda x: x.view(np.matrix)[0],
+    "shorter": lambda x: x[:-1],
+    "empty": lambda x: x[:0],
+    "a row": lambda x: x[None],
+    "not a number": lambda x: np.full_like(x, np.nan),
+    "infinite": lambda x: np.full_like(x, -np.inf),
+    "squares overflow": lambda x: np.full_like(x, 1e200),
+    "longer than a unit": lambda x: 2.0 * x,
+}
+
+
+@pytest.mark.parametrize("damage", DAMAGES)
+@pytest.mark.parametrize(
+    ("make", "field"),
+    [(joints, "position"), (joints, "effort"), (odometry, "quaternion"), (odometry, "nu")],
+)
+def test_the_quick_test_of_all_fields_refuses_what_that_of_each_field_refuses(make, field, damage):
+    """With names every field is looked at by itself."""
+    value = DAMAGES[damage](getattr(make(), field))
+    verdicts = []
+    for names in ({}, {"n": NAMES}):
+        try:
+            with np.errstate(over="ignore"):
+                checks.check("signal", replace(make(), **{field: value}), **names)
+            verdicts.append("good")
+        except SignalError:
+            verdicts.append("refused")
+    assert verdicts[0] == verdicts[1]

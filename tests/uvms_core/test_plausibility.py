@@ -233,3 +233,22 @@ def test_after_a_gap_a_plan_may_begin_anywhere():
     plausible = Plausibility(VEHICLE)
     plausible.admit(topics.REFERENCE, plan(0))
     assert plausible.admit(topics.REFERENCE, plan(2 * S, x=50.0)) is None
+
+
+@given(
+    st.sampled_from(["odometry", "joint_states", "imu", "wrench_command", "gps"]),
+    st.floats(-3.0, 16.0),
+    st.integers(0, 2**32 - 1),
+)
+def test_the_quick_test_of_a_whole_signal_refuses_what_the_words_refuse(name, decade, seed):
+    rng, size = np.random.default_rng(seed), 10.0**decade
+    topic, signal = {
+        "odometry": (topics.ODOMETRY, odometry(nu=size * rng.standard_normal(6))),
+        "joint_states": (topics.JOINT_STATES, joints(velocity=size * rng.standard_normal(N))),
+        "imu": (topics.IMU, replace(IMU, linear_acceleration=size * rng.standard_normal(3))),
+        "wrench_command": (topics.WRENCH_COMMAND, Wrench(0, size * rng.standard_normal(6))),
+        "gps": (topics.GPS, GpsSample(0, seed % 2 == 0, size, 0.0, 0.0, np.eye(3))),
+    }[name]
+    refused = bounds_of(VEHICLE, topic).explain(signal)
+    fault = Plausibility(VEHICLE).fault(topic, signal)
+    assert fault == (refused and f"{topic.name}: {refused}")

@@ -92,13 +92,14 @@ def well_formed(signal: Any) -> tuple[Array, ...] | None:
     Types, shapes and unit lengths, that is; whether the numbers are finite is for the caller to
     see. Quick; None where only `check` can tell.
     """
-    layout = _layout(type(signal))
+    kind: Any = type(signal)
+    layout = _layout(kind)
     if layout is None:
         return None
     values: tuple[Array, ...] = layout.get(signal)
     if list(map(type, values)) != layout.types or list(map(_DTYPE, values)) != layout.dtypes:
         return None
-    if not _fit_together(type(signal), tuple(map(_SHAPE, values))):
+    if not _fit_together(kind, tuple(map(_SHAPE, values))):
         return None
     for index in layout.units:
         if not is_unit(values[index].dot(values[index])):
@@ -195,7 +196,7 @@ def _is_certainly_good(signal: Any) -> bool:
         return False
     squared = 0.0
     for value in values:
-        squared += value.dot(value) if value.ndim == 1 else np.vdot(value, value)
+        squared += value.dot(value) if value.ndim == 1 else float(np.vdot(value, value))
     return isfinite(squared)
 
 
