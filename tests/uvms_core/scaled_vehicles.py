@@ -7,7 +7,7 @@ import numpy as np
 
 from uvms_core.vehicle import Vehicle, vehicle_from_data
 
-POWERS = {"_m": 1, "_m3": 3, "_kg": 3, "_kg_m2": 5, "_n": 3, "_nm": 4, "_n_s": 3}
+POWERS = {"_m": 1, "_m2": 2, "_m3": 3, "_kg": 3, "_kg_m2": 5, "_n": 3, "_nm": 4, "_n_s": 3}
 """Power of the length in a field, by the unit in its name; forces go with weights."""
 
 
