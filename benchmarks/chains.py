@@ -28,6 +28,7 @@ def chain(n: int, seed: int = SEED) -> Vehicle:
     joint, arm = data["arm"]["joints"][0], data["arm"]
     lengths = max(1.6 / n, 0.12) * rng.uniform(0.8, 1.2, n)
     data["hull"]["added_mass"] = _coupled(rng, np.array(data["hull"]["added_mass"]))
+    data["hull"]["fins"] = []  # arms are measured, with a hull of six damping values
     data["hull"]["cg_m"] = [*rng.uniform(-0.01, 0.01, 2).tolist(), 0.012]
     arm["base"]["rpy_deg"] = rng.uniform(-180.0, 180.0, 3).tolist()
     arm["tool"]["position_m"] = [0.1, 0.0, 0.0]

@@ -25,7 +25,7 @@ class Motion(NamedTuple):
 def dry_vehicle() -> Vehicle:
     """The reference vehicle as rigid bodies in a vacuum, as a rigid-body library models it."""
     n = len(load_vehicle().arm.links)
-    hull: dict = {"linear_damping": [0.0] * 6, "quadratic_damping": [0.0] * 6}
+    hull: dict = {"linear_damping": [0.0] * 6, "quadratic_damping": [0.0] * 6, "fins": []}
     changes = {f"hull.{name}": value for name, value in hull.items()}
     changes |= {"hull.added_mass": [0.0] * 6, "environment.water_density_kg_m3": 1e-30}
     for i in range(n):

@@ -19,6 +19,7 @@ vehicle = load_vehicle(
         "hull.spheroid": {"length_m": 1.2, "diameter_m": 0.4},
         "hull.linear_damping": [8.0, 15.0, 15.0, 0.5, 2.0, 2.0],  # does not follow from a shape
         "hull.quadratic_damping": [25.0, 120.0, 120.0, 0.5, 8.0, 8.0],
+        "hull.fins": [],  # those of the reference vehicle would not fit
         "arm.base": {"position_m": [0.4, 0.0, 0.2], "rpy_deg": [90.0, 0.0, 0.0]},
         "arm.joints": [joint | {"name": "one", "a_m": 0.5}, joint | {"name": "two", "a_m": 0.4}],
         "arm.links": [

@@ -115,7 +115,7 @@ ODD = {
         "arm.joints.2.brake_nm: 2 N m are below the 3.11 N m of weight and buoyancy",
     ),
     "no damping in heave": (
-        {"hull.linear_damping.2": 0.0, "hull.quadratic_damping.2": 0.0},
+        {"hull.fins": [], "hull.linear_damping.2": 0.0, "hull.quadratic_damping.2": 0.0},
         "hull.quadratic_damping: neither linear nor quadratic damping in heave",
     ),
     "a joint limit of ten turns": (

@@ -95,3 +95,17 @@ def test_without_fins_it_circles():
     assert velocities[-1, 0] < 1.0
     assert np.degrees(abs(velocities[-1, 5])) > 15.0
     assert np.linalg.norm(positions[-1, :2]) < 12.0
+
+
+@pytest.mark.parametrize(("degrees", "part"), [(5, 0.3), (15, 0.4), (30, 0.7), (45, 0.7)])
+def test_hover_in_a_current_takes_less_of_a_moment_than_without_fins(degrees, part):
+    """Yaw moment of the thrusters that hold it in 0.5 m/s, so far off the bow."""
+    angle, still = np.radians(degrees), np.zeros(REFERENCE.n_joints)
+    nu_r = np.array([0.5 * np.cos(angle), 0.5 * np.sin(angle), 0.0, 0.0, 0.0, 0.0])
+    level = np.array([0.0, 0.0, 0.0, 1.0])
+    with_fins, without = (
+        inverse_dynamics(build_model(v), level, nu_r, np.zeros(6), STOWED, still, still)[5]
+        for v in (REFERENCE, BARE)
+    )
+    assert without > 3.0
+    assert 0.0 < with_fins < part * without
