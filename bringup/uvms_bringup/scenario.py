@@ -26,6 +26,11 @@ from uvms_observer import NavigationConfig, ObserverConfig
 from uvms_planner import PlannerConfig
 
 VEHICLE_PREFIX = "vehicle."
+OVERRIDES = {
+    VEHICLE_PREFIX: ["vehicle_overrides"],
+    "plant.vehicle_overrides.": ["plant", "vehicle_overrides"],
+}
+"""Where settings go that are paths into the vehicle file, by what they begin with."""
 LONGEST_ECHO = 200  # characters of a setting that an error repeats
 
 
@@ -174,11 +179,30 @@ def _apply(data: dict[str, Any], setting: str) -> None:
         raise ScenarioError(f"--set {setting!r}: write PATH=VALUE, such as control.observer=false")
     value = parse_yaml(text, f"--set {_short(setting)!r}: {_short(text)!r}", ScenarioError)
     parents, last = _place(path)
+    place: Any = data
     for parent in parents:
-        data = data.setdefault(parent, {})
-        if not isinstance(data, dict):
+        place = _inside(place, parent, setting)
+        if not isinstance(place, dict | list):
             raise ScenarioError(f"--set {setting!r}: {parent!r} is a value, not a group of values")
-    data[last] = value
+    if isinstance(place, list):
+        place[_number(place, last, setting)] = value
+    else:
+        place[last] = value
+
+
+def _inside(place: Any, name: str, setting: str) -> Any:
+    """The group or list of that name, or number, in another one."""
+    if isinstance(place, list):
+        return place[_number(place, name, setting)]
+    return place.setdefault(name, {})
+
+
+def _number(items: list[Any], name: str, setting: str) -> int:
+    """An item of a list, such as an event, by its number."""
+    if name.isdecimal() and int(name) < len(items):
+        return int(name)
+    choices = f"one of 0 to {len(items) - 1}" if items else "it has none"
+    raise ScenarioError(f"--set {setting!r}: {name!r} is no item of the list; {choices}")
 
 
 def _short(text: str) -> str:
@@ -188,7 +212,8 @@ def _short(text: str) -> str:
 
 def _place(path: str) -> tuple[list[str], str]:
     """The groups that a dotted path leads through, and the name in the last of them."""
-    if path.startswith(VEHICLE_PREFIX):  # its own path goes to the vehicle file's overrides
-        return ["vehicle_overrides"], path.removeprefix(VEHICLE_PREFIX)
+    for prefix, groups in OVERRIDES.items():  # the rest is one path, into the vehicle file
+        if path.startswith(prefix):
+            return groups, path.removeprefix(prefix)
     *parents, last = path.split(".")
     return parents, last
