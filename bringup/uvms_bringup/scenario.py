@@ -6,7 +6,7 @@ from copy import deepcopy
 from pathlib import Path
 from typing import Any
 
-from pydantic import Field, ValidationInfo, field_validator
+from pydantic import BaseModel, Field, ValidationInfo, field_validator
 
 from uvms_bringup.errors import ScenarioError
 from uvms_bringup.goal import LONGEST_RUN_S, Goal
@@ -27,6 +27,11 @@ from uvms_observer import NavigationConfig, ObserverConfig
 from uvms_planner import PlannerConfig
 
 VEHICLE_PREFIX = "vehicle."
+OVERRIDES = {
+    VEHICLE_PREFIX: ["vehicle_overrides"],
+    "plant.vehicle_overrides.": ["plant", "vehicle_overrides"],
+}
+"""Where settings go that are paths into the vehicle file, by what they begin with."""
 LONGEST_ECHO = 200  # characters of a setting that an error repeats
 
 
@@ -198,15 +203,34 @@ def _apply(data: dict[str, Any], setting: str) -> None:
 
 def _put(data: dict[str, Any], path: str, value: Any, what: str) -> None:
     parents, last = _place(path)
+    place: Any = data
     for number, parent in enumerate(parents):
         section = Scenario.field_model(parent) if number == 0 else None
-        inner = data.setdefault(parent, {})
-        if section is not None and issubclass(section, PluginConfig):
-            inner = data[parent] = section.spelled_out(inner)
-        data = inner
-        if not isinstance(data, dict):
+        place = _inside(place, parent, section, what)
+        if not isinstance(place, dict | list):
             raise ScenarioError(f"{what}: {parent!r} is a value, not a group of values")
-    data[last] = value
+    if isinstance(place, list):
+        place[_number(place, last, what)] = value
+    else:
+        place[last] = value
+
+
+def _inside(place: Any, name: str, section: type[BaseModel] | None, what: str) -> Any:
+    """The group or list of that name, or number, in another one; a section in one word in full."""
+    if isinstance(place, list):
+        return place[_number(place, name, what)]
+    inner = place.setdefault(name, {})
+    if section is not None and issubclass(section, PluginConfig):
+        inner = place[name] = section.spelled_out(inner)
+    return inner
+
+
+def _number(items: list[Any], name: str, what: str) -> int:
+    """An item of a list, such as an event, by its number."""
+    if name.isdecimal() and int(name) < len(items):
+        return int(name)
+    choices = f"one of 0 to {len(items) - 1}" if items else "it has none"
+    raise ScenarioError(f"{what}: {name!r} is no item of the list; {choices}")
 
 
 def _short(text: str) -> str:
@@ -216,7 +240,8 @@ def _short(text: str) -> str:
 
 def _place(path: str) -> tuple[list[str], str]:
     """The groups that a dotted path leads through, and the name in the last of them."""
-    if path.startswith(VEHICLE_PREFIX):  # its own path goes to the vehicle file's overrides
-        return ["vehicle_overrides"], path.removeprefix(VEHICLE_PREFIX)
+    for prefix, groups in OVERRIDES.items():  # the rest is one path, into the vehicle file
+        if path.startswith(prefix):
+            return groups, path.removeprefix(prefix)
     *parents, last = path.split(".")
     return parents, last

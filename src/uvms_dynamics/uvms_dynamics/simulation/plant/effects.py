@@ -26,14 +26,11 @@ from uvms_dynamics.simulation.integrator import (
     NO_PUSH,
     QUATERNION,
     VELOCITY,
-    Scratch,
     System,
-    make_scratch,
-    make_system,
+    with_vehicle,
 )
 from uvms_dynamics.simulation.plant.brakes import Brakes, Flags, lock
 from uvms_dynamics.simulation.thrusters import SHARE, STUCK
-from uvms_dynamics.simulation.water import CurrentConfig
 
 
 class EventEffects:
@@ -41,10 +38,8 @@ class EventEffects:
 
     Args:
         vehicle: as the plant has it.
-        flow: how the water moves.
         drift: tells the present velocity (3,) of the water's frame over ground, in the world.
         system: of the vehicle without events.
-        scratch: of the integrator.
         state: of the integrator (nx,), which grasps and stuck joints change.
         brakes: go on with the system as it is.
 
@@ -56,15 +51,13 @@ class EventEffects:
     def __init__(
         self,
         vehicle: Vehicle,
-        flow: CurrentConfig,
         drift: Callable[[], Array],
         system: System,
-        scratch: Scratch,
         state: Array,
         brakes: Brakes,
     ) -> None:
-        self._vehicle, self._flow, self._drift = vehicle, flow, drift
-        self._scratch, self._state, self._brakes = scratch, state, brakes
+        self._vehicle, self._drift = vehicle, drift
+        self._state, self._brakes = state, brakes
         self._whole = system.thrusters[:, SHARE].copy()
         self._stuck: Flags = np.zeros(vehicle.n_joints, dtype=np.bool_)
         self._pushes: list[Array] = []
@@ -129,10 +122,7 @@ class EventEffects:
         self._settle()
 
     def _use(self, vehicle: Vehicle) -> None:
-        changed = make_system(vehicle, self._flow)
-        self.system = self.system._replace(model=changed.model, water=changed.water)
-        if self._scratch.wet is not None:  # it begins as the table of the bodies
-            self._scratch.wet[:] = make_scratch(changed).wet
+        self.system = with_vehicle(self.system, vehicle)
         self._settle()
 
     def _settle(self) -> None:

@@ -41,7 +41,7 @@ from uvms_dynamics.simulation.plant.truth import (
 from uvms_dynamics.simulation.sensors import SensorFrame, SensorSuite
 from uvms_dynamics.simulation.sensors.mounting import Trajectory
 from uvms_dynamics.simulation.thrusters import SHARE
-from uvms_dynamics.simulation.water.surroundings import drift_at, surroundings
+from uvms_dynamics.simulation.water.surroundings import frame_velocity, surroundings
 
 
 class Plant:
@@ -79,9 +79,7 @@ class Plant:
         self._scratch = make_scratch(system)
         self._brakes = Brakes(vehicle, system, self._scratch)
         self._state = initial_state(vehicle, config)
-        self._effects = EventEffects(
-            vehicle, config.flow, self._drift, system, self._scratch, self._state, self._brakes
-        )
+        self._effects = EventEffects(vehicle, self._drift, system, self._state, self._brakes)
         self._schedule = Schedule()
         self._happened: list[Happened] = []
         self._events = 0
@@ -154,7 +152,7 @@ class Plant:
 
     def _drift(self) -> Array:
         """Velocity (3,) of the water's frame over ground at the present stamp, in the world."""
-        return drift_at(self._system, to_seconds(self._stamp))
+        return frame_velocity(self._system, to_seconds(self._stamp))
 
     @property
     def _system(self) -> System:

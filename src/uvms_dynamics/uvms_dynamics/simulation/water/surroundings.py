@@ -43,7 +43,8 @@ def surroundings(system: System, x: Array, time: float) -> Surroundings | None:
         return None
     quat = x[QUATERNION:VELOCITY] / np.linalg.norm(x[QUATERNION:VELOCITY])
     to_body = quat_to_matrix(quat).T
-    velocity, acceleration = drift_at(system, time), stream_at(water, np.array([time]))[0, 3:]
+    moving = stream_at(water, np.array([time]))[0]
+    velocity, acceleration = system.current + moving[:3], moving[3:]
     tilt = -(to_body @ acceleration) / water.gravity
     wet, orbital = None, np.zeros(6)
     if water.waves is not None and water.bodies is not None:
@@ -53,13 +54,6 @@ def surroundings(system: System, x: Array, time: float) -> Surroundings | None:
         orbital = wave_motion_at(water.waves, centre[None], velocity[None], np.array([time]))[0]
     down = to_body[:, 2] + tilt
     return Surroundings(velocity, acceleration, tilt, down, orbital, wet, water.hull)
-
-
-def drift_at(system: System, time: float) -> Array:
-    """Velocity (3,) in the world of the frame that nu_r is relative to, at a time, s."""
-    if system.water is None:
-        return system.current
-    return system.current + stream_at(system.water, np.array([time]))[0, :3]
 
 
 @kernel
