@@ -43,6 +43,7 @@ _SETTINGS: dict[str, Any] = {
     **ONE_THREAD,
     "distributed.scheduler.allowed-failures": DEATHS,
     "distributed.worker.multiprocessing-method": "forkserver",
+    "distributed.worker.profile.enabled": False,  # keeps half a MB a second of call stacks
 }
 PRELOADED = ("distributed", make_row.__module__, "uvms_bringup.campaign.preload")
 """Imported once, by the server that the worker processes are forked from: it takes seconds."""
