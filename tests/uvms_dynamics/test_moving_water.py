@@ -251,7 +251,7 @@ def test_a_link_far_from_the_hull_feels_the_wave_at_its_own_place():
     water = DISPLACED / 0.1 * np.pi * radius**2 * length
     cylinder = {
         "center_m": [0.0] * 3, "axis": [0.0, 1.0, 0.0], "radius_m": radius,
-        "length_m": length, "stations": 4,
+        "length_m": length, "stations": 4, "end_effect": 1.0,
     }  # fmt: skip
     data["arm"]["drag_coefficient"].update(cd=[1.0] * len(data["arm"]["drag_coefficient"]["cd"]))
     data["arm"]["links"][0].update(

@@ -26,7 +26,7 @@ def ball(mass: float = DISPLACED, damping: float = 0.0) -> Vehicle:
         mass_kg=mass, volume_m3=VOLUME, cg_m=[0.0] * 3, cb_m=[0.0] * 3,
         inertia_kg_m2=(inertia * np.eye(3)).tolist(), spheroid=None,
         added_mass=np.diag([0.5 * DISPLACED] * 3 + [0.0] * 3).tolist(),
-        linear_damping=[damping] * 6, quadratic_damping=[0.0] * 6,
+        linear_damping=[damping] * 6, quadratic_damping=[0.0] * 6, fins=[],
     )  # fmt: skip
     return vehicle_from_data(data)
 
