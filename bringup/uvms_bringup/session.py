@@ -33,7 +33,7 @@ from uvms_core.errors import UvmsError
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
 from uvms_core.yaml_text import dump_yaml
-from uvms_dynamics.simulation.plant.as_built import as_built
+from uvms_dynamics.simulation.plant.as_built import AsBuilt, as_built
 from uvms_planner.errors import GoalRejected
 
 Goal = PathGoal | JointGoal | None
@@ -178,10 +178,11 @@ class Session:
         built = as_built(self.vehicle, self.scenario.plant, self.scenario.seed)
         if built.differs:
             log.attach(plant_record.VEHICLE_FILE, dump_vehicle(built.vehicle), "application/yaml")
-            log.metadata(plant_record.NAME, plant_record.to_metadata(built.to_data()))
         if isinstance(self.goal, PathGoal):
             log.attach("path.json", path_to_json(self.goal), "application/json")
-        log.metadata(RUN, run_record(self.scenario, self.pace, self.command, self.holder.run_id))
+        records = run_records(self.scenario, built, self.pace, self.command, self.holder.run_id)
+        for name, record in records.items():
+            log.metadata(name, record)
 
     def _summarise(self, clock: Stopwatch) -> dict[str, Any]:
         summary: dict[str, Any] = {"run_id": self.holder.run_id}
@@ -208,17 +209,22 @@ def simulate_goal(
         ending.goal = "succeeded" if succeeded else "aborted"
 
 
-def run_record(scenario: Scenario, pace: str, command: str, run_id: str) -> dict[str, Any]:
-    """What a log says about its run."""
-    return {
+def run_records(
+    scenario: Scenario, built: AsBuilt, pace: str, command: str = "", run_id: str = ""
+) -> dict[str, dict[str, str]]:
+    """Metadata records by name: what a log says about its run, and about a plant that differs."""
+    run = {
         "scenario": scenario.scenario,
-        "seed": scenario.seed,
+        "seed": str(scenario.seed),
         "git_revision": git_revision(),
         "version": version("uvms_bringup"),
         "pace": pace,
         "command": command,
         "run_id": run_id,
     }
+    if not built.differs:
+        return {RUN: run}
+    return {RUN: run, plant_record.NAME: plant_record.to_metadata(built.to_data())}
 
 
 def prepare(

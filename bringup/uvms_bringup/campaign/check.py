@@ -10,10 +10,12 @@ from uvms_analysis.log.run_end import RunEnd
 from uvms_analysis.summary import summarise
 from uvms_bringup.campaign.plan import Variant
 from uvms_bringup.errors import CampaignError
+from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import Scenario
-from uvms_bringup.session import effective_values, run_record
+from uvms_bringup.session import effective_values, run_records
 from uvms_core.errors import UvmsError
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation.plant.as_built import as_built
 
 
 def check_variants(campaign: str, chosen: Iterable[Variant]) -> dict[str, str]:
@@ -58,8 +60,9 @@ def summary_fields(scenario: Scenario, vehicle: Vehicle) -> dict[str, Any]:
 
     Those that depend on the run, such as counts by node, are one field here, which is None.
     """
+    built = as_built(vehicle, scenario.plant, scenario.seed)
     log = MemoryWriter(vehicle, ()).log(
-        run_record(scenario, "lockstep", "", ""), effective_values(scenario), None, RunEnd(0.0)
+        run_records(scenario, built, str(Pace())), effective_values(scenario), None, RunEnd(0.0)
     )
     return flatten(_without_empty_groups(summarise(log, wall_s=None)))
 

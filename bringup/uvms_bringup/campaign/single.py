@@ -7,8 +7,9 @@ from uvms_analysis.summary import LOADED, summarise
 from uvms_bringup.ending import Ending
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import Scenario
-from uvms_bringup.session import Stopwatch, effective_values, run_record, simulate_goal
+from uvms_bringup.session import Stopwatch, effective_values, run_records, simulate_goal
 from uvms_core.errors import UvmsError
+from uvms_dynamics.simulation.plant.as_built import as_built
 from uvms_planner.errors import GoalRejected
 
 
@@ -33,7 +34,9 @@ def summary_of(scenario: Scenario) -> dict[str, Any]:
     clock.stop()
     if not stopped_by:
         ending.sent = writer.counts
-    about = run_record(scenario, str(Pace()), "", "")
+    built = as_built(vehicle, scenario.plant, scenario.seed)
     end = ending.record(scenario.duration_s, stopped_by)
-    log = writer.log(about, effective_values(scenario), goal, end)
+    log = writer.log(
+        run_records(scenario, built, str(Pace())), effective_values(scenario), goal, end
+    )
     return summarise(log, wall_s=clock.run_s)

@@ -16,7 +16,7 @@ from uvms_analysis.errors import LogError
 from uvms_analysis.log import run_end, schema
 from uvms_analysis.log.definition import UNDECODABLE
 from uvms_analysis.log.goal_file import NAME as PATH_FILE
-from uvms_analysis.log.read import RUN, RunLog
+from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.records import Entry, Records
 from uvms_analysis.log.run_end import RunEnd
 from uvms_core import topics
@@ -120,7 +120,7 @@ class MemoryWriter:
 
     def log(
         self,
-        run: Mapping[str, Any],
+        described: Mapping[str, Mapping[str, str]],
         configuration: dict[str, Any],
         goal: Any,
         end: RunEnd,
@@ -128,13 +128,13 @@ class MemoryWriter:
         """The log of what was written.
 
         Args:
-            run: metadata of the run, as a log has it: scenario, seed, pace, ...
+            described: metadata records of the run by name, as a log has them.
             configuration: the scenario as plain data.
             goal: what the planner was asked for.
             end: how the run ended.
         """
         records = _records(list(self._topics.values()))
-        records.metadata[RUN] = {key: str(value) for key, value in run.items()}
+        records.metadata |= {name: dict(record) for name, record in described.items()}
         records.metadata[run_end.NAME] = end.to_metadata()
         read = {"config.yaml": configuration, "vehicle.yaml": self._vehicle}
         if isinstance(goal, PathGoal):
