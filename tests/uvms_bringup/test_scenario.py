@@ -51,7 +51,7 @@ def test_what_comes_with_the_project_can_start(name):
     scenario = load_scenario(name)
     vehicle = scenario.load_vehicle()
     goal = scenario.goal.build(vehicle, scenario.plant)
-    assert (goal is None) == (name in ("hover", "grasp"))
+    assert (goal is None) == (name in ("hover", "grasp", "swell"))
     assert scenario.duration_s > scenario.goal.duration_s
 
 
