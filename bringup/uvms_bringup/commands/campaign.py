@@ -28,7 +28,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--scheduler",
         default="",
         metavar="ADDRESS",
-        help="of a dask scheduler that runs already, as tcp://HOST:8786",
+        help="use the workers of this dask scheduler (tcp://HOST:8786) instead",
     )
     add("--output", metavar="DIR", help="folder of the results (default: runs/CAMPAIGN-TIME)")
     add("--resume", action="store_true", help="go on with the campaign in --output DIR")
@@ -36,14 +36,14 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--select",
         default="*",
         metavar="PATTERN",
-        help="run only the cases whose name fits, as 'current*'; their baselines come with them",
+        help="only the cases whose name fits ('current*'), with their baselines",
     )
     add("--picture", metavar="FILE", help="draw the distributions to this file (png, svg, pdf)")
     add(
         "--logs",
         choices=("none", "failed", "all"),
         default="none",
-        help="of which runs to keep a log in DIR/logs (default: none)",
+        help="runs whose logs are kept, in DIR/logs (default: none)",
     )
 
 

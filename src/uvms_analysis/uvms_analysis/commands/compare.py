@@ -7,9 +7,12 @@ from uvms_core.command import Command
 
 def add_arguments(parser: ArgumentParser) -> None:
     """Options of `uvms compare`."""
-    parser.add_argument("runs", nargs="+", metavar="RUN", help="folders or logs of runs")
+    parser.add_argument("runs", nargs="+", metavar="RUN", help="folder or log of a run")
     parser.add_argument(
-        "--output", default="compare", metavar="DIR", help="of figures and page (default: compare)"
+        "--output",
+        default="compare",
+        metavar="DIR",
+        help="folder of figures and page (default: compare)",
     )
 
 
@@ -25,4 +28,4 @@ def run(options: Namespace) -> int:
     return 0
 
 
-COMMAND = Command("runs side by side: a table, and figures laid over", add_arguments, run)
+COMMAND = Command("runs side by side: a table of what differs, figures, a page", add_arguments, run)

@@ -71,7 +71,8 @@ class PaceConfig(Config):
 class PlantNode(UvmsNode):
     """thruster_command and joint_command in; sensors, joint_states, ground truth and /clock out.
 
-    Services: `start` (begin, where `auto_start` is false) and `pause` (hold simulated time).
+    Services: `start` (begin, where `auto_start` is false), `pause` (hold simulated time),
+    `apply_event` (something happens to the vehicle) and `reset` (back to the start, at t = 0).
     """
 
     role = topics.PLANT
