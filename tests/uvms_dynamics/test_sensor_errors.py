@@ -11,7 +11,7 @@ from uvms_dynamics.kernels.rotations import quat_to_rotation_vector, quat_to_rpy
 from uvms_dynamics.simulation.sensors import SensorSuite
 from uvms_dynamics.simulation.sensors.dvl import DvlSensor
 from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
-from uvms_dynamics.simulation.sensors.errors import Errors, misalignment
+from uvms_dynamics.simulation.sensors.error_model import Errors, misalignment
 from uvms_dynamics.simulation.sensors.gps import GpsSensor
 from uvms_dynamics.simulation.sensors.imu import ImuSensor
 from uvms_dynamics.simulation.sensors.mounting import Trajectory

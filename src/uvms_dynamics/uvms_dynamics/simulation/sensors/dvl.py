@@ -9,7 +9,7 @@ from uvms_core.signals import Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_dynamics.simulation.sensors.errors import Errors, misalignment
+from uvms_dynamics.simulation.sensors.error_model import Errors, misalignment
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import QUATERNION, SPEED, VELOCITY, Trajectory
 

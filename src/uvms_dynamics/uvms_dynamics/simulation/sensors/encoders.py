@@ -7,7 +7,7 @@ import numpy as np
 from uvms_core.rng import generator
 from uvms_core.signals import Array, JointStates
 from uvms_core.vehicle.sensors import Encoders
-from uvms_dynamics.simulation.sensors.errors import Errors
+from uvms_dynamics.simulation.sensors.error_model import Errors
 
 
 class EncoderSensor:

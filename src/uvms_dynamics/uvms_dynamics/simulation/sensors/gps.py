@@ -10,7 +10,7 @@ from uvms_core.signals import Array, GpsSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Gps
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_dynamics.simulation.sensors.errors import Errors
+from uvms_dynamics.simulation.sensors.error_model import Errors
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import QUATERNION, VELOCITY, Trajectory
 

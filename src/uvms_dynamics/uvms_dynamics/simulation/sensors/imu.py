@@ -16,7 +16,7 @@ from uvms_dynamics.kernels.rotations import (
     rotation_vector_to_quat,
     rpy_to_quat,
 )
-from uvms_dynamics.simulation.sensors.errors import Errors, misalignment
+from uvms_dynamics.simulation.sensors.error_model import Errors, misalignment
 from uvms_dynamics.simulation.sensors.model import SensorModel
 from uvms_dynamics.simulation.sensors.mounting import (
     FORCE,
