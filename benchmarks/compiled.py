@@ -61,7 +61,7 @@ def stepping(
 
     def work() -> Array:
         state[:] = start
-        advance(system, state, thrust, effort, step, scratch, states, rates, 0.0)
+        advance(tuple(system), state, thrust, effort, step, tuple(scratch), states, rates, 0.0)
         return state
 
     return work

@@ -12,6 +12,7 @@ from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
 from uvms_core.signals import Wrench
 from uvms_core.vehicle import load_vehicle
+from uvms_core.vehicle.thrust_curve import nearest_reachable
 from uvms_dynamics import configuration_matrix
 
 BLUEROV = load_vehicle("bluerov2_alpha5")
@@ -154,3 +155,14 @@ def test_the_same_wrench_and_none_after_it():
     second = allocator.step(Wrench(1, surge(30.0)))[1]
     np.testing.assert_allclose(first.thrust, second.thrust, atol=1e-6)
     assert not allocator.safe(2)[1].thrust.any()
+
+
+@settings(deadline=None)
+@given(wanted=st.floats(-20.0, 20.0))
+def test_rounding_out_of_a_gap_is_that_of_the_thrust_curve(wanted):
+    """For one thruster alone to make up for nothing is the same as to round."""
+    allocator = along_surge(1, (-30.0, 40.0), (-3.0, 2.0), slew_aware=False, regularisation=1e-10)
+    thrust = allocator.step(Wrench(0, surge(wanted)))[1].thrust[0]
+    middle = min(abs(wanted - 1.0), abs(wanted + 1.5))
+    if middle > 0.1 * abs(wanted):  # in the middle of a gap a thruster stays as it was
+        assert thrust == pytest.approx(float(nearest_reachable(wanted, -3.0, 2.0)), abs=1e-6)

@@ -48,6 +48,7 @@ class _Kept:
         self.stamps = array("q")
         self.entries: list[tuple[int, bytes]] = []
         self.rejected: list[str] = []
+        self.is_plain = False  # whether all that follow are kept as they are
 
 
 class MemoryWriter:
@@ -70,20 +71,29 @@ class MemoryWriter:
 
     def write(self, topic: Topic, signal: Any, stamp: int | None = None) -> None:
         """One signal at its own stamp, or at the one given."""
+        kept = self._topics.get(topic.name)
+        if kept is None or not kept.is_plain:
+            self._write_in_full(topic, signal, stamp)
+            return
+        stamp = signal.stamp if stamp is None else stamp
+        kept.stamps.append(stamp)
+        try:
+            check(topic.name, signal)  # costs nothing where a part has checked it
+        except SignalError:
+            self._encode(kept, signal, stamp)
+            return
+        if kept.signals is not None:
+            kept.signals.append(signal)
+
+    def _write_in_full(self, topic: Topic, signal: Any, stamp: int | None) -> None:
+        """The first signal of a topic, and every one where a message holds more."""
         if stamp is None:
             stamp = signal if topic is topics.CLOCK else signal.stamp
         kept = self._of(topic)
         kept.stamps.append(stamp)
-        if topic is topics.DIAGNOSTICS or not kept.entries:
+        if topic is not topics.CLOCK or not kept.entries:
             self._encode(kept, signal, stamp)
-        elif topic is not topics.CLOCK:
-            try:
-                check(topic.name, signal)  # costs nothing where a part has checked it
-            except SignalError:
-                self._encode(kept, signal, stamp)
-                return
-            if kept.signals is not None:
-                kept.signals.append(signal)
+        kept.is_plain = topic is not topics.CLOCK and topic is not topics.DIAGNOSTICS
 
     def write_plain(self, topic: Topic, message: dict[str, Any], stamp: int) -> None:
         """One message given as a nested dict: it is counted."""
@@ -91,7 +101,7 @@ class MemoryWriter:
 
     def write_made(self, topic: Topic, stamp: int, make: Callable[..., Any], *values: Any) -> None:
         """One message that `make` would make of the values: it is counted."""
-        kept = self._of(topic)
+        kept = self._topics.get(topic.name) or self._of(topic)
         kept.stamps.append(stamp)
         if not kept.entries:
             kept.entries.append((stamp, kept.codec.encode(make(*values))))

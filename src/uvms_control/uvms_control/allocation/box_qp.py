@@ -153,3 +153,17 @@ def solve_box_qp(hessian, g, lower, upper, u, state, max_steps):
         if not _release(gradient, lower, upper, state, MULTIPLIER_TOLERANCE * scale):
             return step + 1
     return TOO_MANY_STEPS
+
+
+@exact_kernel
+def solve_from(hessian, g, lower, upper, u, state, max_steps):
+    """As `solve_box_qp`, once more from zero where the warm start takes too many steps.
+
+    A bad warm start only costs steps; when it fails from zero too, something is wrong.
+    """
+    steps = solve_box_qp(hessian, g, lower, upper, u, state, max_steps)
+    if steps == TOO_MANY_STEPS:
+        for i in range(u.size):
+            u[i], state[i] = 0.0, FREE
+        steps = solve_box_qp(hessian, g, lower, upper, u, state, max_steps)
+    return steps

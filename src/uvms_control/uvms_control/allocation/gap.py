@@ -9,11 +9,11 @@ command near the middle of a gap would otherwise switch them at every tick.
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
+from uvms_control.allocation.box_qp import solve_from
 from uvms_control.allocation.least_squares import BoundedLeastSquares
 from uvms_core.signals import Array
-from uvms_core.vehicle.thrust_curve import nearest_reachable
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
 BETTER = 0.7
 """A thruster is started or stopped where that leaves less than this share of the squared error: for
@@ -33,69 +33,150 @@ class ThrustGap:
     """
 
     def __init__(self, solver: BoundedLeastSquares, least: Array) -> None:
-        self._solver, self._least = solver, least
-        self._inside = least + np.array([[1.0], [-1.0]]) * NONE * solver.limits
+        self._solver = solver
+        self._tables = (*solver.tables, np.ascontiguousarray(least, dtype=np.float64))
         self.reset()
 
     def reset(self) -> None:
         """Forget which thrusters turn."""
-        self._turns = np.zeros(self._least.shape[1], dtype=np.bool_)
+        self._turns = np.zeros(self._solver.limits.size, dtype=np.bool_)
 
     def left_out(self, tau: Array, thrust: Array, lower: Array, upper: Array) -> Array:
         """Thrusts (m,) N outside of the gaps, for the least-squares thrusts (m,) of a wrench (6,).
 
         `lower` and `upper` (m,) are the bounds of this tick.
         """
-        if self._in_gap(thrust).any():
-            warm = self._solver.warm_start
-            found = self._one_by_one(tau, thrust, lower.copy(), upper.copy())
-            self._solver.warm_start = warm
-            thrust = self._better(tau, found, self._rounded(thrust))
-        self._turns = self._turning(thrust)
-        return np.where(self._turns, thrust, 0.0)
+        solver, found = self._solver, thrust.copy()
+        steps = leave_out(
+            self._tables, solver.gradient(tau), tau, lower, upper,
+            *solver.warm_start, solver.max_steps, self._turns, found,
+        )  # fmt: skip
+        if steps < 0:
+            solver.fail(tau)
+        return found
 
-    def _turning(self, thrust: Array) -> NDArray[np.bool_]:
-        return np.abs(thrust) > NONE * self._solver.limits
 
-    def _one_by_one(self, tau: Array, thrust: Array, low: Array, high: Array) -> Array:
-        for _ in range(thrust.size):
-            inside = self._in_gap(thrust)
-            if not inside.any():
-                break
-            i, edge = self._first(thrust, inside)
-            thrust = self._decided(tau, i, edge, low, high)
+@exact_kernel
+def leave_out(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust):
+    """Move `thrust` (m,) out of the gaps and note in `turns` (m,) which thrusters then turn.
+
+    `tables` are those of the solver and the least thrusts, `g` (m,) its gradient of the wrench
+    `tau` (6,), `u` and `state` (m,) its warm start, which is spent. Returns a negative number
+    where the solver fails.
+    """
+    limits, least, steps = tables[3], tables[4], 0
+    if _nearest_edge(limits, least, thrust) >= 0:
+        rounded = np.empty_like(thrust)
+        for i in range(thrust.size):
+            rounded[i] = _rounded(least, thrust[i], i)
+        steps = _one_by_one(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust)
+        if _is_better(tables, tau, turns, thrust, rounded):
+            _copy_into(thrust, rounded)
+    for i in range(thrust.size):
+        turns[i] = _is_turning(limits, thrust[i], i)
+        if not turns[i]:
+            thrust[i] = 0.0
+    return steps
+
+
+@exact_inner
+def _is_turning(limits, thrust, i):
+    return abs(thrust) > NONE * limits[i]
+
+
+@exact_inner
+def _edge(least, thrust, i):
+    """The least thrust of thruster i in the sense of a thrust."""
+    return least[1, i] if thrust > 0.0 else least[0, i]
+
+
+@exact_inner
+def _rounded(least, thrust, i):
+    """The thrust of thruster i nearest to a wanted one, as `ThrustTable.reachable`."""
+    edge = _edge(least, thrust, i)
+    if abs(thrust) >= abs(edge):
         return thrust
+    return edge if abs(thrust) > 0.5 * abs(edge) else 0.0
 
-    def _rounded(self, thrust: Array) -> Array:
-        return nearest_reachable(thrust, *self._least)
 
-    def _better(self, tau: Array, one: Array, two: Array) -> Array:
-        """The second where it is clearly better, or as good and the thrusters turn as they did."""
-        keeps = [np.array_equal(self._turning(each), self._turns) for each in (one, two)]
-        last, other = (two, one) if keeps == [False, True] else (one, two)
-        errors = self._solver.error(tau, last), self._solver.error(tau, other)
-        return other if errors[1] < BETTER * errors[0] - ALIKE else last
+@exact_inner
+def _nearest_edge(limits, least, thrust):
+    """The thruster in its gap that is nearest to what it can give; -1: none is in its gap."""
+    first, nearest = -1, np.inf
+    for i in range(thrust.size):
+        edge, size = _edge(least, thrust[i], i), abs(thrust[i])
+        if not NONE * limits[i] < size < abs(edge) - NONE * limits[i]:
+            continue
+        moved = min(size, abs(edge - thrust[i])) / limits[i]
+        if moved < nearest:
+            first, nearest = i, moved
+    return first
 
-    def _in_gap(self, thrust: Array) -> Array:
-        astern, ahead = self._inside
-        none = NONE * self._solver.limits
-        return ((thrust < -none) & (thrust > astern)) | ((thrust > none) & (thrust < ahead))
 
-    def _first(self, thrust: Array, inside: Array) -> tuple[int, float]:
-        """The thruster that is nearest to what it can give, and its least thrust in that sense."""
-        edges = np.where(thrust > 0.0, self._least[1], self._least[0])
-        moved = np.minimum(np.abs(thrust), np.abs(edges - thrust)) / self._solver.limits
-        i = int(np.argmin(np.where(inside, moved, np.inf)))
-        return i, float(edges[i])
+@exact_inner
+def _one_by_one(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust):
+    """Decide one thruster after the other, in place; negative where the solver fails."""
+    limits, least = tables[3], tables[4]
+    low, high = lower.copy(), upper.copy()
+    for _ in range(thrust.size):
+        i = _nearest_edge(limits, least, thrust)
+        if i < 0:
+            break
+        steps = _decide(tables, g, tau, low, high, u, state, max_steps, turns, thrust, i)
+        if steps < 0:
+            return steps
+    return 0
 
-    def _decided(self, tau: Array, i: int, edge: float, low: Array, high: Array) -> Array:
-        """The thrusts with thruster i at none or at its edge, which becomes both its bounds."""
-        found = {}
-        for value in (0.0, edge):
-            low[i] = high[i] = value
-            thrust = self._solver.solve(tau, low, high)
-            found[value] = self._solver.error(tau, thrust), thrust
-        last, other = (edge, 0.0) if self._turns[i] else (0.0, edge)
-        best = other if found[other][0] < BETTER * found[last][0] - ALIKE else last
-        low[i] = high[i] = best
-        return found[best][1]
+
+@exact_inner
+def _decide(tables, g, tau, low, high, u, state, max_steps, turns, thrust, i):
+    """Set thruster i to none or to its edge, which becomes both its bounds, and solve again."""
+    hessian, limits = tables[0], tables[3]
+    edge, stopped = _edge(tables[4], thrust[i], i), np.empty_like(thrust)
+    for value, found in ((0.0, stopped), (edge, thrust)):
+        low[i] = high[i] = value
+        steps = solve_from(hessian, g, low / limits, high / limits, u, state, max_steps)
+        if steps < 0:
+            return steps
+        for k in range(thrust.size):
+            found[k] = min(max(u[k] * limits[k], low[k]), high[k])
+    at_none, at_edge = _error(tables, tau, stopped), _error(tables, tau, thrust)
+    if turns[i]:
+        stops = at_none < BETTER * at_edge - ALIKE
+    else:
+        stops = not at_edge < BETTER * at_none - ALIKE
+    if stops:
+        low[i] = high[i] = 0.0
+        _copy_into(thrust, stopped)
+    return 0
+
+
+@exact_inner
+def _copy_into(out, values):
+    for i in range(out.size):
+        out[i] = values[i]
+
+
+@exact_inner
+def _is_better(tables, tau, turns, one, two):
+    """Whether the second is clearly better, or as good and the thrusters turn as they did."""
+    keeps_one, keeps_two = True, True
+    for i in range(turns.size):
+        keeps_one = keeps_one and _is_turning(tables[3], one[i], i) == turns[i]
+        keeps_two = keeps_two and _is_turning(tables[3], two[i], i) == turns[i]
+    first, second = _error(tables, tau, one), _error(tables, tau, two)
+    if keeps_two and not keeps_one:
+        return not first < BETTER * second - ALIKE
+    return second < BETTER * first - ALIKE
+
+
+@exact_inner
+def _error(tables, tau, thrust):
+    """Weighted squared error of the wrench of thrusts (m,) N, as a share of the authority."""
+    matrix, row_scale, total = tables[1], tables[2], 0.0
+    for row in range(6):
+        missing = -tau[row]
+        for i in range(thrust.size):
+            missing += matrix[row, i] * thrust[i]
+        total += (row_scale[row] * missing) ** 2
+    return total

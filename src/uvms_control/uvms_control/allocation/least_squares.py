@@ -7,9 +7,11 @@ thruster, so that newtons and newton metres compare, the weights W are free of u
 weighs a share of thrust against a share of authority.
 """
 
+from typing import NoReturn
+
 import numpy as np
 
-from uvms_control.allocation.box_qp import TOO_MANY_STEPS, solve_box_qp
+from uvms_control.allocation.box_qp import solve_from
 from uvms_control.errors import AllocationError
 from uvms_core.signals import Array
 
@@ -41,7 +43,7 @@ class BoundedLeastSquares:
         m = self.limits.size
         self._hessian = np.ascontiguousarray(scaled.T @ scaled + regularisation * np.eye(m))
         self._gradient_of_wrench = -scaled.T * self._row_scale
-        self._max_steps = MAX_STEPS_PER_THRUSTER * max(m, 1)
+        self.max_steps = MAX_STEPS_PER_THRUSTER * max(m, 1)
         self.reset()
 
     def reset(self) -> None:
@@ -51,37 +53,36 @@ class BoundedLeastSquares:
 
     @property
     def warm_start(self) -> tuple[Array, Array]:
-        """Last solution and which bounds held it, copies; to go on from again."""
+        """Last solution and which bounds held it, copies."""
         return self._u.copy(), self._state.copy()
 
-    @warm_start.setter
-    def warm_start(self, value: tuple[Array, Array]) -> None:
-        self._u, self._state = value
+    @property
+    def tables(self) -> tuple[Array, Array, Array, Array]:
+        """Hessian (m, m) in shares of the limits, matrix (6, m), row scale (6,), limits (m,) N."""
+        return self._hessian, self.matrix, self._row_scale, self.limits
 
-    def error(self, tau: Array, thrust: Array) -> float:
-        """Weighted squared error of the wrench of thrusts (m,) N, as a share of the authority."""
-        missing = self._row_scale * (self.matrix @ thrust - tau)
-        return float(missing @ missing)
+    def gradient(self, tau: Array) -> Array:
+        """Gradient (m,) of the objective at no thrust, for the wrench `tau` (6,)."""
+        return self._gradient_of_wrench @ tau
+
+    def fail(self, tau: Array) -> NoReturn:
+        """Raise AllocationError: no thrust was found for this wrench (6,)."""
+        self.reset()
+        raise AllocationError(
+            f"no thrust found for the wrench {np.array2string(tau, precision=6)}: after "
+            f"{self.max_steps} steps of the active-set method the optimum was not reached; "
+            "raise allocation.regularisation or bring allocation.weights closer together"
+        )
 
     def solve(self, tau: Array, lower: Array | None = None, upper: Array | None = None) -> Array:
         """Thrusts (m,) in N for the wrench `tau` (6,); bounds default to the limits themselves."""
         low = self._low if lower is None else lower / self.limits
         high = self._high if upper is None else upper / self.limits
-        steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
-        if steps == TOO_MANY_STEPS:
-            # A bad warm start only costs steps; when it fails from zero too, something is wrong.
-            self.reset()
-            steps = self._minimise(self._gradient_of_wrench @ tau, low, high)
+        steps = solve_from(
+            self._hessian, self.gradient(tau), low, high, self._u, self._state, self.max_steps
+        )
         if steps < 0:
-            self.reset()
-            raise AllocationError(
-                f"no thrust found for the wrench {np.array2string(tau, precision=6)}: after "
-                f"{self._max_steps} steps of the active-set method the optimum was not reached; "
-                "raise allocation.regularisation or bring allocation.weights closer together"
-            )
+            self.fail(tau)
         bound_low = self.lower if lower is None else lower
         bound_high = self.upper if upper is None else upper
         return np.clip(self._u * self.limits, bound_low, bound_high)
-
-    def _minimise(self, g: Array, low: Array, high: Array) -> int:
-        return solve_box_qp(self._hessian, g, low, high, self._u, self._state, self._max_steps)

@@ -39,7 +39,8 @@ def simulate(
     start, thrust, torque = _fitting(system, x, thrust_command, effort, ())
     states = np.empty((steps + 1, len(start)))
     rates, scratch = np.empty_like(states), make_scratch(system)
-    advance(system, start, thrust, torque, float(step), scratch, states, rates, float(start_s))
+    tables = tuple(scratch), states, rates
+    advance(tuple(system), start, thrust, torque, float(step), *tables, float(start_s))
     return states
 
 

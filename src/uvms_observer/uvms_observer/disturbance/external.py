@@ -48,16 +48,21 @@ class ExternalWrenchObserver:
 
     def step(self, dt: float, before: Moment, now: Moment, thrust: Array) -> Array:
         """Estimate (6,) after an interval of dt s with this mean thruster wrench (6,)."""
-        missing = unexplained_wrench(self._model, dt, before, now, thrust)
+        missing = unexplained_wrench(self._model, dt, tuple(before), tuple(now), thrust)
         self.wrench = self.wrench - np.expm1(-self._bandwidth * dt) * (missing - self.wrench)
         return self.wrench
 
 
 @exact_kernel
 def unexplained_wrench(
-    model: Model, dt: float, before: Moment, now: Moment, thrust: Array
+    model: Model, dt: float, first: tuple[Array, ...], last: tuple[Array, ...], thrust: Array
 ) -> Array:
-    """Mean wrench (6,) over the interval that the motion needs beyond the thrusters' wrench."""
+    """Mean wrench (6,) over the interval that the motion needs beyond the thrusters' wrench.
+
+    `first` and `last` are the fields of the `Moment`s at its ends: plain tuples, which numba takes
+    apart in a fraction of the time.
+    """
+    before, now = Moment(*first), Moment(*last)
     quaternion = _mean(_same_sign(before.quaternion, now.quaternion), now.quaternion)
     needed = inverse_dynamics(
         model,

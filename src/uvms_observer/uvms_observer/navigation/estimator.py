@@ -93,7 +93,8 @@ class Estimator:
         if self.time is None or stamp <= self.time:
             return
         dt, self.time, imu = to_seconds(stamp - self.time), stamp, self._imu
-        propagate(self.state, self._rate, rate, self._force, force, dt, imu.gravity, *imu.process)
+        readings = self._rate, rate, self._force, force
+        propagate(tuple(self.state), *readings, dt, imu.gravity, *imu.process)
 
     def _correct(self, reading: Reading) -> None:
         name = reading.name

@@ -11,7 +11,7 @@ from uvms_core.signals import Array, Odometry
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, transposed
-from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.state import SIZE, Fields, NavigationState
 
 
 @exact_inner
@@ -72,9 +72,10 @@ def _symmetrize(matrix: Array) -> None:
 
 @exact_kernel
 def _estimate(
-    state: NavigationState, lever: Array, rate: Array, rate_variance: float
+    fields: Fields, lever: Array, rate: Array, rate_variance: float
 ) -> tuple[Array, Array, Array, Array, Array]:
     """The fields of an `Odometry` but the stamp, in its order."""
+    state = NavigationState(*fields)
     position, pose_covariance = _pose(state, lever)
     nu, twist_covariance = _twist(state, lever, rate, rate_variance)
     return position, state.quaternion.copy(), nu, pose_covariance, twist_covariance
@@ -84,4 +85,4 @@ def odometry(
     stamp: int, state: NavigationState, lever: Array, rate: Array, rate_variance: float
 ) -> Odometry:
     """The estimate at the body origin; fresh arrays."""
-    return Odometry(stamp, *_estimate(state, lever, rate, rate_variance))
+    return Odometry(stamp, *_estimate(tuple(state), lever, rate, rate_variance))

@@ -22,7 +22,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
-from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.state import SIZE, Fields, NavigationState
 
 
 class ProcessNoise(NamedTuple):
@@ -36,7 +36,7 @@ class ProcessNoise(NamedTuple):
 
 @exact_kernel
 def propagate(
-    state: NavigationState,
+    fields: Fields,
     rate_before: Array,
     rate: Array,
     force_before: Array,
@@ -54,12 +54,14 @@ def propagate(
     the rest is done.
 
     Args:
+        fields: of the state.
         rate_before, rate: the gyro's readings, (3,) rad/s, body.
         force_before, force: the accelerometer's, (3,) m/s^2, body.
         dt: length of the interval, s.
         gravity: m/s^2, down.
         gyro, accelerometer, bias_variance, bias_time_constant: see `ProcessNoise`.
     """
+    state = NavigationState(*fields)
     turn = np.empty(3)  # in the first half of the interval
     for i in range(3):
         turn[i] = (0.5 * (rate_before[i] + rate[i]) - state.gyro_bias[i]) * (0.5 * dt)

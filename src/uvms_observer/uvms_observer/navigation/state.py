@@ -32,7 +32,11 @@ SIZE = 20
 
 
 class NavigationState(NamedTuple):
-    """Nominal state and error covariance; the kernels change these arrays in place."""
+    """Nominal state and error covariance; the kernels change these arrays in place.
+
+    Kernels that are called from Python take it as a plain tuple, `tuple(state)`: to take a named
+    one apart costs numba as long as a small kernel runs.
+    """
 
     position: Array  # (3,) m, of the IMU, map_ned
     velocity: Array  # (3,) m/s, of the IMU over ground, map_ned
@@ -46,6 +50,10 @@ class NavigationState(NamedTuple):
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""
         return NavigationState(*(part.copy() for part in self))
+
+
+Fields = tuple[Array, ...]
+"""A `NavigationState` as a plain tuple."""
 
 
 def empty_state() -> NavigationState:

@@ -212,7 +212,7 @@ class Plant:
         if self._safe[1] and self._brakes.exist and len(states) > 1:
             self._brakes.advance(self._state, thrust, step, states, rates, began)
         else:
-            system, rows = self._effects.moving, (self._scratch, states, rates)
+            system, rows = tuple(self._effects.moving), (tuple(self._scratch), states, rates)
             advance(system, self._state, thrust, self._effort, step, *rows, began)
         self._rate = rates[-1].copy()
         check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)

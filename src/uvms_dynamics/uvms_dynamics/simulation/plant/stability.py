@@ -112,11 +112,12 @@ def jacobian(vehicle: Vehicle, system: System, point: Point) -> Array:
     Only a tether depends on it, and its bounds keep that mode slow.
     """
     n = vehicle.n_joints
-    scratch, thrust = make_scratch(system), point.state[JOINTS + 2 * n :].copy()
+    fields, tables = tuple(system), tuple(make_scratch(system))
+    thrust = point.state[JOINTS + 2 * n :].copy()
     row, rate = np.empty((1, len(point.state))), np.empty((1, len(point.state)))
 
     def rates(x: Array) -> Array:
-        advance(system, x, thrust, point.effort, 0.0, scratch, row, rate, 0.0)
+        advance(fields, x, thrust, point.effort, 0.0, tables, row, rate, 0.0)
         return rate[0, QUATERNION:].copy()
 
     columns = []

@@ -12,7 +12,7 @@ from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.state import DVL_SCALE, SIZE, NavigationState
+from uvms_observer.navigation.state import DVL_SCALE, SIZE, Fields, NavigationState
 
 
 class DvlVelocity(Measurement):
@@ -28,8 +28,9 @@ class DvlVelocity(Measurement):
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
+        noise, fields = self._rate_variance, tuple(state)
         return correct_velocity(
-            state, sample.velocity, self._variance, self.lever, rate, self._rate_variance, gate
+            fields, sample.velocity, self._variance, self.lever, rate, noise, gate
         )
 
 
@@ -54,7 +55,7 @@ def velocity(state: NavigationState, lever: Array, rate: Array) -> tuple[Array, 
 
 @exact_kernel
 def correct_velocity(
-    state: NavigationState,
+    fields: Fields,
     measured: Array,
     variance: float,
     lever: Array,
@@ -63,6 +64,7 @@ def correct_velocity(
     gate: float,
 ) -> float:
     """DVL: velocity (3,) m/s in body axes; the gyro's noise enters by the lever arm."""
+    state = NavigationState(*fields)
     residual, H = velocity(state, lever, rate)
     subtract_from(measured, residual)
     arm = skew(lever)

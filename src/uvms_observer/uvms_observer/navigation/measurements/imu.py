@@ -19,7 +19,7 @@ from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import attitude_variance
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.state import SIZE, Fields, NavigationState
 
 
 class Gyrocompass(Measurement):
@@ -33,7 +33,7 @@ class Gyrocompass(Measurement):
 
     def correct(self, state: NavigationState, sample: ImuSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
-        return correct_attitude(state, sample.quaternion, self._variance, gate)
+        return correct_attitude(tuple(state), sample.quaternion, self._variance, gate)
 
 
 @exact_inner
@@ -51,10 +51,9 @@ def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
 
 
 @exact_kernel
-def correct_attitude(
-    state: NavigationState, measured: Array, variance: Array, gate: float
-) -> float:
+def correct_attitude(fields: Fields, measured: Array, variance: Array, gate: float) -> float:
     """Gyrocompass: quaternion (4,), variances (3,) rad^2 about the body axes."""
+    state = NavigationState(*fields)
     residual, H = attitude(state, measured)
     R = quat_to_matrix(state.quaternion)
     scaled = np.empty((3, 3))

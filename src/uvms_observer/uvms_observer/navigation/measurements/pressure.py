@@ -10,7 +10,7 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.state import DEPTH_BIAS, SIZE, NavigationState
+from uvms_observer.navigation.state import DEPTH_BIAS, SIZE, Fields, NavigationState
 
 
 class PressureDepth(Measurement):
@@ -31,7 +31,7 @@ class PressureDepth(Measurement):
     ) -> float:
         """As `Measurement.correct`."""
         measured = (sample.pressure - self._surface) / self._gradient
-        return correct_depth(state, measured, self._variance, self.lever, gate)
+        return correct_depth(tuple(state), measured, self._variance, self.lever, gate)
 
 
 @exact_inner
@@ -50,9 +50,10 @@ def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
 
 @exact_kernel
 def correct_depth(
-    state: NavigationState, measured: float, variance: float, lever: Array, gate: float
+    fields: Fields, measured: float, variance: float, lever: Array, gate: float
 ) -> float:
     """Pressure sensor: its depth in m."""
+    state = NavigationState(*fields)
     residual, H = depth(state, lever)
     residual[0] = measured - residual[0]
     N = np.empty((1, 1))
