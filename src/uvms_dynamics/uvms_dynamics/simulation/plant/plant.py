@@ -112,10 +112,10 @@ class Plant:
             stamp, system.model, state, self._rate, drift, self._tethered, moving
         )
         return PlantTruth(
-            true_odometry(stamp, state, drift),
-            true_joints(stamp, state, self._effort),
-            pushed(disturbance, state, self._effects.push_wrench),
-            self._applied(),
+            checks.trust(true_odometry(stamp, state, drift)),  # of a state that is finite
+            checks.trust(true_joints(stamp, state, self._effort)),
+            checks.trust(pushed(disturbance, state, self._effects.push_wrench)),
+            checks.trust(self._applied()),
             drift.copy() if moving is None else drift + moving.orbital[:3],
         )
 
