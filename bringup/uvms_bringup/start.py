@@ -29,7 +29,8 @@ def check_start(
     """
     _check_periods(vehicle, plant, planner)
     try:
-        check_events(events, vehicle)
+        step, period = plant.step_s, plant.control_period_s
+        check_events(events, vehicle, to_nanoseconds(step), to_nanoseconds(period))
     except ConfigError as fault:
         raise ScenarioError(str(fault)) from fault
     try:

@@ -53,3 +53,10 @@ def test_no_seed_of_a_valid_vehicle_is_refused(vehicle, share):
     mismatch = dict.fromkeys(SHARES, share) | SHIFTS
     drawn = [built(vehicle, seed, **mismatch).mismatch["mass"] for seed in range(60)]
     assert len(set(drawn)) == 60
+
+
+def test_an_override_of_added_mass_leaves_the_lift():
+    config = PlantConfig(vehicle_overrides={"hull.added_mass.1.1": 40.0})
+    hull = as_built(REMUS, config, 1).vehicle.hull
+    assert hull.added_mass[1][1] == 40.0
+    np.testing.assert_allclose(lift_matrix(hull), lift_matrix(REMUS.hull), rtol=1e-12)

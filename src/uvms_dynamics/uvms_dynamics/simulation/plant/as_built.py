@@ -15,6 +15,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle, vehicle_from_data
 from uvms_dynamics.simulation.plant.config import PlantConfig
 from uvms_dynamics.simulation.plant.mismatch import Draws, mismatched
+from uvms_dynamics.simulation.plant.overridden import check_effective, overridden
 
 
 @dataclass(frozen=True)
@@ -57,8 +58,9 @@ def as_built(nominal: Vehicle, config: PlantConfig, seed: int) -> AsBuilt:
     overrides, draws, vehicle = config.vehicle_overrides, {}, nominal
     try:
         if overrides:
-            vehicle = vehicle_from_data(nominal.model_dump(warnings=False), "plant", overrides)
+            vehicle = overridden(nominal, overrides)
             _check_same_interface(nominal, vehicle)
+            check_effective(nominal, overrides)
         if draws := config.mismatch.draw(vehicle, seed):
             vehicle = vehicle_from_data(mismatched(vehicle, draws), "the plant that was drawn")
     except VehicleFileError as fault:
