@@ -8,7 +8,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.events import Events, check_events
 from uvms_dynamics.simulation.plant.as_built import as_built
-from uvms_dynamics.simulation.plant.config import initial_joints
+from uvms_dynamics.simulation.plant.config import check_waves, initial_joints
 from uvms_dynamics.simulation.plant.stability import check_plant
 from uvms_planner import PlannerConfig
 
@@ -35,6 +35,7 @@ def check_start(
         raise ScenarioError(str(fault)) from fault
     try:
         own = as_built(vehicle, plant, seed).vehicle
+        check_waves(own, plant)
         check_plant(own, plant, events)
         initial_joints(own, plant)
     except ConfigError as fault:

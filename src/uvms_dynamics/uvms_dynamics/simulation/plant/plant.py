@@ -27,7 +27,12 @@ from uvms_dynamics.simulation.integrator import (
 )
 from uvms_dynamics.simulation.plant.as_built import as_built
 from uvms_dynamics.simulation.plant.brakes import Brakes
-from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state, steps_in
+from uvms_dynamics.simulation.plant.config import (
+    PlantConfig,
+    check_waves,
+    initial_state,
+    steps_in,
+)
 from uvms_dynamics.simulation.plant.divergence import check_finite
 from uvms_dynamics.simulation.plant.effects import EventEffects
 from uvms_dynamics.simulation.plant.stability import check_plant
@@ -71,6 +76,7 @@ class Plant:
         self._period = to_nanoseconds(config.control_period_s)
         self._step = to_nanoseconds(config.step_s)
         check_events(events, vehicle, self._step, self._period)
+        check_waves(vehicle, config)
         check_plant(vehicle, config, events)
         steps = steps_in(self._period, config, "control_period_s")
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
