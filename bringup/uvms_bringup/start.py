@@ -8,7 +8,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.events import Events, check_events
 from uvms_dynamics.simulation.plant.as_built import as_built
-from uvms_dynamics.simulation.plant.config import initial_joints
+from uvms_dynamics.simulation.plant.config import check_waves, initial_joints
 from uvms_dynamics.simulation.plant.stability import check_plant
 from uvms_planner import PlannerConfig
 
@@ -29,11 +29,13 @@ def check_start(
     """
     _check_periods(vehicle, plant, planner)
     try:
-        check_events(events, vehicle)
+        step, period = plant.step_s, plant.control_period_s
+        check_events(events, vehicle, to_nanoseconds(step), to_nanoseconds(period))
     except ConfigError as fault:
         raise ScenarioError(str(fault)) from fault
     try:
         own = as_built(vehicle, plant, seed).vehicle
+        check_waves(own, plant)
         check_plant(own, plant, events)
         initial_joints(own, plant)
     except ConfigError as fault:

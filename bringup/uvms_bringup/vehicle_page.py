@@ -137,6 +137,8 @@ def _thrust(summary: dict[str, Any]) -> Iterator[str]:
         unit = "N" if axis in ("surge", "sway", "heave") else "N m"
         out = "  out of reach" if axis in summary["axes_out_of_reach"] else ""
         yield f"    {axis:8}{back + 0.0:>10.4g} to {ahead:<8.4g} {unit}{out}"
+    if one_way := summary["axes_pushed_one_way"]:
+        yield f"  not both ways, since thrusters do not reverse: {', '.join(one_way)}"
     speeds = ", ".join(f"{axis} {v:.3g} m/s" for axis, v in summary["speed_m_s"].items())
     yield f"  speed at that force, hull alone: {speeds}"
 

@@ -8,7 +8,12 @@ from uvms_control.allocation.authority import axis_authority
 from uvms_control.vehicle_data import thruster_limits
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle, joint_limits
-from uvms_core.vehicle.plausible.propulsion import AXES, axes_out_of_reach, terminal_speed
+from uvms_core.vehicle.plausible.propulsion import (
+    AXES,
+    axes_out_of_reach,
+    axes_pushed_one_way,
+    terminal_speed,
+)
 from uvms_core.vehicle.plausible.stability import postures
 from uvms_core.vehicle.postures import STOWED
 from uvms_core.vehicle.resistance import axis_resistance
@@ -42,6 +47,7 @@ def vehicle_summary(vehicle: Vehicle) -> dict[str, Any]:
         },
         "authority": _authority(vehicle),
         "axes_out_of_reach": list(axes_out_of_reach(vehicle)),
+        "axes_pushed_one_way": list(axes_pushed_one_way(vehicle)),
         "speed_m_s": _speeds(vehicle),
         "joints": _joints(vehicle),
         "sensors": {

@@ -41,3 +41,24 @@ def test_a_setting_reaches_the_plants_own_vehicle_and_single_events():
 def test_what_the_plant_cannot_be_is_refused_before_anything_starts(setting, words):
     with pytest.raises(ScenarioError, match=words):
         load_scenario("hover", [setting]).load_vehicle()
+
+
+def test_waves_and_seabed_have_one_depth():
+    settings = [
+        "plant.current.waves=[{height_m: 0.8, period_s: 5.0, water_depth_m: 20.0}]",
+        "vehicle.environment.seabed_depth_m=50.0",
+    ]
+    words = r"plant.current.waves.0.water_depth_m: 20 m, but .*environment.seabed_depth_m is 50 m"
+    with pytest.raises(ScenarioError, match=words):
+        load_scenario("hover", settings).load_vehicle()
+    settings[1] = "vehicle.environment.seabed_depth_m=20.0"
+    load_scenario("hover", settings).load_vehicle()
+
+
+def test_waves_shorter_than_twice_the_hull_are_refused():
+    """A wave of 1.7 s is 4.51 m long in deep water, g T^2 / 2 pi, and the hull 2.4 m."""
+    wave = "plant.current.waves=[{{height_m: 0.1, period_s: {}, water_depth_m: 50.0}}]"
+    words = r"waves.0.period_s: a wave of 1.7 s is 4.51 m long, less than 2 times the hull's 2.4 m"
+    with pytest.raises(ScenarioError, match=words):
+        load_scenario("hover", [wave.format(1.7)]).load_vehicle()
+    load_scenario("hover", [wave.format(1.8)]).load_vehicle()

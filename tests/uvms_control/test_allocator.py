@@ -206,3 +206,14 @@ def test_a_wrong_layout_is_named():
             np.zeros((6, 2)), np.array([1.0, -1.0]), np.ones(2), AllocatorConfig()
         )
     assert str(error.value) == "thruster limits: [ 1. -1.], expected positive numbers"
+
+
+def test_axes_that_can_be_pushed_one_way_only_are_named():
+    changes = {f"thrusters.{i}.limit_n": None for i in range(VEHICLE.n_thrusters)}
+    changes |= {f"thrusters.{i}.limits_n": [0.0, 49.0] for i in range(len(changes))}
+    allocator = ThrustAllocator(load_vehicle(None, changes), AllocatorConfig())
+    assert allocator.axes_without_authority == ()
+    assert "X (only +)" in allocator.axes_pushed_one_way
+    assert "both ways along" in allocator.warning
+    assert "X (only +)" in allocator.warning
+    assert REFERENCE.axes_pushed_one_way == ()

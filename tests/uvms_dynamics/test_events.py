@@ -19,6 +19,7 @@ from uvms_dynamics.simulation.integrator import advance, make_scratch
 from uvms_dynamics.simulation.plant.brakes import lock
 
 N, M = REFERENCE.n_joints, REFERENCE.n_thrusters
+STEP, PERIOD = 5_000_000, 50_000_000  # of plant and control ticks, ns
 MAIN, LAG = REFERENCE.thrusters[0].name, REFERENCE.thrusters[0].time_constant_s
 WEIGHTLESS = load_vehicle(
     None, {"environment.gravity_m_s2": 1e-9, "hull.mass_kg": 184.0, "hull.cg_m": [0.0, 0.0, 0.012]}
@@ -228,6 +229,11 @@ def test_events_at_run_time_are_those_of_a_scenario():
         ("{sensor: imu, fault: silent}", "at_s 0: navigation takes its attitude"),
         ("{sensor: encoders, fault: silent}", "cannot go on without joint states"),
         ("{sensor: dvl, fault: bias, bias: [1, 2]}", "has 2 numbers; dvl needs 1 or 3"),
+        (
+            "{sensor: dvl, fault: noise, std: -1}",
+            "std: .* is >= 0, and this is -1",
+        ),
+        ("{sensor: dvl, fault: outliers, rate: 0.5, std: [1, -2, 1]}", "std: .* and this is -2"),
         ("{sensor: imu, fault: scale, scale: 2, field: quaternion}", "an attitude has no scale"),
         ("{until_s: -1, wrench: {}}", "until_s"),
         ("{wrench: {frame: moon}}", "'world' or 'body'"),
@@ -243,4 +249,4 @@ def test_events_at_run_time_are_those_of_a_scenario():
 )
 def test_an_event_that_cannot_be_is_refused_with_the_choices(text, words):
     with pytest.raises(ConfigError, match=words):
-        check_events((event_from_text(text, 0),), REFERENCE)
+        check_events((event_from_text(text, 0),), REFERENCE, STEP, PERIOD)

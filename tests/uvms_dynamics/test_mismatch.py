@@ -143,3 +143,24 @@ def test_a_mismatched_thruster_gives_its_share_of_the_command():
 def test_an_override_that_cannot_be_is_refused_by_name(overrides, words):
     with pytest.raises(ConfigError, match=f"(?s)vehicle_overrides: .*{words}"):
         built(overrides=overrides)
+
+
+@pytest.mark.parametrize(
+    ("path", "value", "instead"),
+    [
+        ("hull.spheroid.length_m", 3.0, "hull.volume_m3, hull.inertia_kg_m2, hull.added_mass"),
+        ("hull.spheroid.diameter_m", 0.3, "hull.volume_m3, hull.inertia_kg_m2, hull.added_mass"),
+        ("arm.links.0.cylinder.radius_m", 0.05, "arm.links.0.volume_m3, arm.links.0.cg_m"),
+        ("arm.links.1.cylinder", None, "arm.links.1.volume_m3, arm.links.1.cg_m"),
+    ],
+)
+def test_an_override_of_a_shape_that_is_worked_out_is_refused(path, value, instead):
+    words = f"vehicle_overrides: {path} changes nothing of the plant.*{instead}"
+    with pytest.raises(ConfigError, match=words):
+        built(overrides={path: value})
+
+
+def test_a_shape_may_be_overridden_where_something_follows_from_it_again():
+    longer = {"hull.spheroid.length_m": 3.0, "hull.added_mass": "spheroid"}
+    added = np.array(built(overrides=longer).vehicle.hull.added_mass)
+    assert added[1, 1] > 1.1 * np.array(REFERENCE.hull.added_mass)[1, 1]

@@ -5,6 +5,7 @@ import pytest
 from random_vehicles import REFERENCE
 
 from uvms_core.signals import JointCommand, ThrusterCommand
+from uvms_core.vehicle import load_vehicle
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -16,12 +17,13 @@ from uvms_dynamics.simulation.events import event_from_text
 N, M = REFERENCE.n_joints, REFERENCE.n_thrusters
 TICKS = 100
 BEGIN, END = 1.0, 4.0
+PERIOD = 50_000_000  # of the control ticks, ns
 
 
-def frames_of(*texts, seed=3, ticks=TICKS):
+def frames_of(*texts, seed=3, ticks=TICKS, vehicle=REFERENCE):
     events = tuple(event_from_text(text, 0) for text in texts)
     config = PlantConfig(initial_velocity=(0.5, 0.1, 0.0, 0.0, 0.0, 0.05))
-    plant = Plant(REFERENCE, config, seed, events)
+    plant = Plant(vehicle, config, seed, events)
     frames = [plant.sense()]
     for _ in range(ticks):
         plant.step(
@@ -172,3 +174,43 @@ def test_several_faults_of_a_sensor_work_one_after_another(whole):
     texts = fault("dvl", "fault: bias, bias: 1.0"), fault("dvl", "fault: scale, scale: 2.0")
     for mine, other in pairs(whole, "dvl", *texts):
         np.testing.assert_allclose(mine.velocity, 2.0 * (other.velocity + 1.0), rtol=1e-14)
+
+
+@pytest.mark.parametrize(("own", "more"), [(0.4, 0.3), (0.4, 0.8), (0.1, 0.05)])
+def test_a_late_sensor_comes_later_still_by_the_fault(own, more):
+    vehicle = load_vehicle(None, {"sensors.dvl.latency_s": own})
+    frames = frames_of(fault("dvl", f"fault: latency, latency_s: {more}"), vehicle=vehicle)
+    arrivals = [
+        (sample.stamp, tick * PERIOD)
+        for tick, frame in enumerate(frames)
+        for sample in frame.samples["dvl"]
+        if sample.stamp > 0
+    ]
+    assert sum(is_covered(stamp) for stamp, _ in arrivals) > 10
+    last = 0
+    for stamp, came in arrivals:
+        delay = own + more if is_covered(stamp) else own
+        last = max(last, stamp + round(1e9 * delay))
+        assert came == -(-last // PERIOD) * PERIOD
+
+
+def test_no_other_event_changes_the_noise_of_a_fault():
+    noise = "{at_s: 0.5, sensor: dvl, fault: noise, std: 0.1}"
+    others = (
+        "{at_s: 9.0, thruster: main, effectiveness: 1}",
+        "{at_s: 9.0, sensor: dvl, fault: noise, std: 0.1}",
+        "{at_s: 0.5, sensor: imu, fault: noise, field: linear_acceleration, std: 0.1}",
+    )
+    alone = frames_of(noise, ticks=20)
+    together = frames_of(*others, noise, ticks=20)
+    for ours, theirs in zip(samples_of(together, "dvl"), samples_of(alone, "dvl"), strict=True):
+        np.testing.assert_array_equal(ours.velocity, theirs.velocity)
+
+
+def test_two_faults_that_are_alike_have_random_numbers_of_their_own():
+    noise = "{at_s: 0.5, sensor: dvl, fault: noise, std: 0.1}"
+    runs = [samples_of(frames_of(*[noise] * count, ticks=20), "dvl") for count in range(3)]
+    whole, once, twice = (np.array([each.velocity for each in run]) for run in runs)
+    first, second = once - whole, twice - once
+    assert np.abs(first[-5:]).min() > 1e-6
+    assert np.abs(second[-5:] - first[-5:]).min() > 1e-6

@@ -9,7 +9,11 @@ Where the arm disturbs the attitude, the first is the better choice; the second 
 
 import numpy as np
 
-from uvms_control.allocation.authority import axes_without_authority, axis_authority
+from uvms_control.allocation.authority import (
+    axes_pushed_one_way,
+    axes_without_authority,
+    axis_authority,
+)
 from uvms_control.allocation.gap import ThrustGap
 from uvms_control.allocation.least_squares import BoundedLeastSquares, box_of
 from uvms_control.config import AllocatorConfig
@@ -73,6 +77,7 @@ class ThrustAllocator:
         self._gap = ThrustGap(self._solver, least) if least.any() else None
         self._row_scale = 1.0 / np.maximum(np.abs(matrix) @ self.limits, 1e-9)
         self.axes_without_authority = axes_without_authority(matrix)
+        self.axes_pushed_one_way = axes_pushed_one_way(matrix, self.lower, self.upper)
         self.reset()
 
     def reset(self) -> None:
@@ -90,12 +95,17 @@ class ThrustAllocator:
 
     @property
     def warning(self) -> str | None:
-        """What this layout cannot do, or None if it can push along every axis."""
-        if not self.axes_without_authority:
+        """What this layout cannot do, or None if it can push both ways along every axis."""
+        lacks = []
+        if self.axes_without_authority:
+            lacks.append(f"independently along {', '.join(self.axes_without_authority)}")
+        if self.axes_pushed_one_way:
+            lacks.append(f"both ways along {', '.join(self.axes_pushed_one_way)}")
+        if not lacks:
             return None
         return (
-            f"the {self.limits.size} thrusters cannot push independently along "
-            f"{', '.join(self.axes_without_authority)}; commands there leave a residual"
+            f"the {self.limits.size} thrusters cannot push {', nor '.join(lacks)}; commands there"
+            " leave a residual"
         )
 
     def step(self, wrench: Wrench) -> tuple[ThrusterCommand, Allocation]:

@@ -108,6 +108,21 @@ def lift_matrix(hull: Any) -> Array:
     return matrix
 
 
+def lift_alone(hull: Any) -> CrossTerms | None:
+    """The products of a hull without what its added mass gives: they stay when that changes."""
+    if (terms := hull.cross_terms) is None or not terms.added_mass_included:
+        return hull.cross_terms
+    lift, given = lift_matrix(hull), [name for name in PRODUCTS if getattr(terms, name) is not None]
+    values = {name: float(-lift[place_of(name)]) for name in given}
+    return CrossTerms(added_mass_included=False, **values)
+
+
+def is_coupled(hull: Any) -> bool:
+    """Whether the damping of one axis depends on the motion along another, other than surge."""
+    tables = hull.linear_damping, hull.quadratic_damping
+    return hull.cross_terms is not None or any(np.ndim(table) == 2 for table in tables)
+
+
 def place_of(name: str) -> tuple[int, int]:
     """Row and column of a coefficient such as N_uv: (5, 1)."""
     return AXES.index(name[0]), VELOCITIES.index(name[3])

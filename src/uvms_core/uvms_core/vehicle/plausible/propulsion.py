@@ -7,6 +7,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_core.vehicle.plausible.extents import bare_hull_extent
 from uvms_core.vehicle.plausible.finding import Finding, graded
+from uvms_core.vehicle.reach import one_way_texts
 from uvms_core.vehicle.resistance import axis_resistance
 from uvms_core.vehicle.statics import buoyancy, thruster_columns, wrench_reach
 from uvms_core.vehicle.vehicle import Vehicle
@@ -52,14 +53,25 @@ def axes_out_of_reach(vehicle: Vehicle) -> tuple[str, ...]:
     return tuple(axis for axis, part in zip(AXES, outside, strict=True) if part > SPAN)
 
 
-def _span(vehicle: Vehicle) -> Array:
-    """Orthonormal columns (6, rank) that span all wrenches of the thrusters.
+def axes_pushed_one_way(vehicle: Vehicle) -> tuple[str, ...]:
+    """Axes along which the thrusters cannot push alone in both directions, `heave (only +)`.
 
-    Moments are taken over the hull's size, so that all entries are numbers without a unit.
+    Without a sign: in neither, although thrusters that reversed could. Besides those out of reach.
     """
+    lower = np.array([thruster.astern_n for thruster in vehicle.thrusters])
+    upper = np.array([thruster.ahead_n for thruster in vehicle.thrusters])
+    return tuple(one_way_texts(_columns(vehicle), lower, upper, AXES))
+
+
+def _columns(vehicle: Vehicle) -> Array:
+    """Wrench (6, m) of each thruster, moments over the hull's size: numbers without a unit."""
     size = bare_hull_extent(vehicle.hull).largest_m
-    columns = thruster_columns(vehicle) / np.array([1.0] * 3 + [size] * 3)[:, None]
-    basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return thruster_columns(vehicle) / np.array([1.0] * 3 + [size] * 3)[:, None]
+
+
+def _span(vehicle: Vehicle) -> Array:
+    """Orthonormal columns (6, rank) that span all wrenches of the thrusters."""
+    basis, sizes, _ = np.linalg.svd(_columns(vehicle), full_matrices=False)
     return basis[:, sizes > SPAN * sizes[0]]
 
 
@@ -88,6 +100,13 @@ def _reach(vehicle: Vehicle) -> Iterator[Finding]:
             f"the {vehicle.n_thrusters} of them{how} cannot push along {', '.join(missing)} alone:"
             f" the layout has rank {_span(vehicle).shape[1]}, below 6; only weight, buoyancy and"
             " damping act there",
+        )
+    if one_way := axes_pushed_one_way(vehicle):
+        yield Finding(
+            "thrusters",
+            f"with thrusters that do not reverse they cannot push both ways along"
+            f" {', '.join(one_way)} alone; what is asked for there leaves a residual, or weight,"
+            " buoyancy and damping must give it",
         )
 
 

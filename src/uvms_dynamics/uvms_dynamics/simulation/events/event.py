@@ -2,7 +2,7 @@
 
 from abc import abstractmethod
 from collections.abc import Iterable
-from typing import Protocol
+from typing import ClassVar, Protocol
 
 from pydantic import Field, model_validator
 
@@ -31,6 +31,10 @@ class Effects(Protocol):
     def set_joint(self, name: str, stuck: bool) -> None:
         """A joint keeps its angle, or moves again."""
 
+    @property
+    def step(self) -> int:
+        """Integration step of the plant, ns."""
+
     def push(self, wrench: Array) -> None:
         """A wrench (12,) that acts from now on besides those that act: see `integrator.PUSH`."""
 
@@ -41,11 +45,21 @@ class Effects(Protocol):
 class Event(Config):
     """One thing that happens to the plant."""
 
+    between_ticks: ClassVar[bool] = False
+    """Whether it happens at the nearest plant step, not at the next control tick."""
+
     at_s: float = Field(ge=0.0, le=LATEST_S, description="when it begins, s")
 
     @abstractmethod
     def check(self, vehicle: Vehicle) -> None:
         """Raise ConfigError where it does not fit the vehicle; names the field and the choices."""
+
+    def check_times(self, step: int, period: int) -> None:
+        """Raise ConfigError where it would be over before it has an effect.
+
+        step, period: of the plant and of its control ticks, ns.
+        """
+        return None
 
     @abstractmethod
     def begin(self, effects: Effects) -> None:

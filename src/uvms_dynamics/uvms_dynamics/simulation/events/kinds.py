@@ -118,16 +118,17 @@ def event_from_text(text: str, now: int) -> Event:
     return config.events[0]
 
 
-def check_events(events: Events, vehicle: Vehicle) -> None:
-    """Check events against the vehicle, before anything starts.
+def check_events(events: Events, vehicle: Vehicle, step: int, period: int) -> None:
+    """Check events against vehicle, plant step and control period (ns), before anything starts.
 
     Raises:
-        ConfigError: a name that the vehicle does not have, a size that does not fit, or a payload
-            that is released without one.
+        ConfigError: a name that the vehicle does not have, a size that does not fit, a payload that
+            is released without one, or an event that would be over before it has an effect.
     """
     for number, event in enumerate(events):
         try:
             event.check(vehicle)
+            event.check_times(step, period)
         except ConfigError as fault:
             raise ConfigError(f"events.{number}: {fault}") from fault
     check_payloads(events)

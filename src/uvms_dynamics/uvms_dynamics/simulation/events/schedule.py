@@ -7,6 +7,7 @@ from typing import Any
 
 from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_dynamics.simulation.events.event import Effects, Event
+from uvms_dynamics.simulation.events.wrench import nearest_step
 
 
 @dataclass(frozen=True)
@@ -14,7 +15,7 @@ class Happened:
     """An event that began or ended.
 
     Attributes:
-        stamp: of the control tick, ns.
+        stamp: of the control tick, of a push of the plant step, ns.
         asked_s: when it was asked for, s.
         text: in words.
     """
@@ -33,11 +34,17 @@ def status_values(happened: Sequence[Happened]) -> dict[str, Any]:
 class Schedule:
     """Events that are still to come. Those of one instant happen in the order in which they came.
 
-    An event happens at the first control tick at or after its time, and acts from that tick on.
+    An event happens at the first control tick at or after its time, and acts from that tick on. A
+    push begins and ends at the plant step that is nearest.
+
+    Args:
+        step: of the plant, ns.
+        period: of its control ticks, ns, a multiple of the step.
     """
 
-    def __init__(self) -> None:
-        self._heap: list[tuple[int, int, bool, Event]] = []
+    def __init__(self, step: int, period: int) -> None:
+        self._step, self._period = step, period
+        self._heap: list[tuple[int, int, int, bool, Event]] = []
         self._count = 0
 
     def add(self, event: Event) -> None:
@@ -48,20 +55,30 @@ class Schedule:
 
     def _push(self, time: float, begins: bool, event: Event) -> None:
         self._count += 1
-        heappush(self._heap, (to_nanoseconds(time), self._count, begins, event))
+        asked = to_nanoseconds(time)
+        due = -(-asked // self._period) * self._period
+        if event.between_ticks:
+            due = nearest_step(time, self._step)
+        heappush(self._heap, (due, asked, self._count, begins, event))
 
     @property
     def pending(self) -> tuple[Event, ...]:
         """Events that have not begun."""
-        return tuple(event for _, _, begins, event in sorted(self._heap[:]) if begins)
+        return tuple(event for *_, begins, event in sorted(self._heap) if begins)
+
+    def within(self, began: int, ends: int) -> list[int]:
+        """Stamps, ns, strictly between two at which something happens, in order."""
+        if not self._heap or self._heap[0][0] >= ends:
+            return []
+        return sorted({due for due, *_ in self._heap if began < due < ends})
 
     def run(self, stamp: int, effects: Effects) -> Iterator[Happened]:
-        """Let all happen that are due at a tick."""
+        """Let all happen that are due at a stamp."""
         while self._heap and self._heap[0][0] <= stamp:
-            due, _, begins, event = heappop(self._heap)
+            _, asked, _, begins, event = heappop(self._heap)
             if begins:
                 event.begin(effects)
             else:
                 event.end(effects)
             text = event.text() if begins else f"{event.text()}: ends"
-            yield Happened(stamp, to_seconds(due), text)
+            yield Happened(stamp, to_seconds(asked), text)

@@ -6,10 +6,11 @@ A fault begins and ends with the stamps of the samples, and so between control t
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
-from pydantic import BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Field
 
 from uvms_core.errors import ConfigError
 from uvms_core.sensors import INERTIAL
+from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation.events.event import Effects, LastingEvent, check_name
 from uvms_dynamics.simulation.events.measured import (
@@ -31,6 +32,16 @@ Size = Annotated[tuple[float, ...], BeforeValidator(_as_list), Field(min_length=
 """A number for all axes, or one for each; of an attitude the rotation about the body axes, rad."""
 
 
+def _not_negative(value: tuple[float, ...]) -> tuple[float, ...]:
+    if min(value) < 0.0:
+        raise ValueError(f"a standard deviation is >= 0, and this is {min(value):g}")
+    return value
+
+
+Deviation = Annotated[Size, AfterValidator(_not_negative)]
+"""Standard deviation of an error, for all axes or one for each."""
+
+
 KIND: Any = Field(description="what is wrong with it")
 
 
@@ -43,6 +54,24 @@ class SensorEvent(LastingEvent):
     def check(self, vehicle: Vehicle) -> None:
         """The sensor's name, and the size of the fault."""
         check_name("sensor", self.sensor, sensor_names(vehicle))
+        if self.sensor != ENCODERS:
+            rate = vehicle.sensors.mounted[self.sensor].rate_hz
+            self._check_concerned(to_nanoseconds(1.0 / rate))
+
+    def check_times(self, step: int, period: int) -> None:
+        """Encoders are read at control ticks."""
+        if self.sensor == ENCODERS:
+            self._check_concerned(period)
+
+    def _check_concerned(self, period: int) -> None:
+        """ConfigError unless a sample, of those that are due every `period` ns, has the fault."""
+        first = -(-to_nanoseconds(self.at_s) // period) * period
+        if self.until_s is not None and to_nanoseconds(self.until_s) <= first:
+            raise ConfigError(
+                f"until_s {self.until_s:g}: no sample of the {self.sensor}, which come every"
+                f" {to_seconds(period):g} s, is measured from {self.at_s:g} s on and before; the"
+                f" next is that of {to_seconds(first):g} s"
+            )
 
     def begin(self, effects: Effects) -> None:
         """The sensors look at the stamps themselves."""
@@ -159,7 +188,7 @@ class NoiseFault(_OfSize):
     """White noise is added to that of the sensor."""
 
     fault: Literal["noise"] = KIND
-    std: Size = Field(description="its standard deviation in the unit of the signal")
+    std: Deviation = Field(description="its standard deviation in the unit of the signal")
 
     @property
     def size(self) -> tuple[float, ...]:
@@ -172,7 +201,7 @@ class OutlierFault(_OfSize):
 
     fault: Literal["outliers"] = KIND
     rate: float = Field(gt=0.0, le=1.0, description="share of the samples")
-    std: Size = Field(description="standard deviation of the error in the unit of the signal")
+    std: Deviation = Field(description="standard deviation of the error in the unit of the signal")
 
     @property
     def size(self) -> tuple[float, ...]:

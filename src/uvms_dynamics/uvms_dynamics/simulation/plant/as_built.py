@@ -15,6 +15,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle, vehicle_from_data
 from uvms_dynamics.simulation.plant.config import PlantConfig
 from uvms_dynamics.simulation.plant.mismatch import Draws, mismatched
+from uvms_dynamics.simulation.plant.overridden import check_effective, overridden
 
 
 @dataclass(frozen=True)
@@ -54,16 +55,13 @@ def as_built(nominal: Vehicle, config: PlantConfig, seed: int) -> AsBuilt:
         ConfigError: an override does not exist, is not allowed or changes what the nodes of the
             loop count on, or the result is no possible vehicle; names the field.
     """
-    draws = config.mismatch.draw(nominal, seed)
-    overrides = config.vehicle_overrides
-    if not overrides and not draws:
-        return AsBuilt(nominal)
-    vehicle = nominal
+    overrides, draws, vehicle = config.vehicle_overrides, {}, nominal
     try:
         if overrides:
-            vehicle = vehicle_from_data(nominal.model_dump(warnings=False), "plant", overrides)
+            vehicle = overridden(nominal, overrides)
             _check_same_interface(nominal, vehicle)
-        if draws:
+            check_effective(nominal, overrides)
+        if draws := config.mismatch.draw(vehicle, seed):
             vehicle = vehicle_from_data(mismatched(vehicle, draws), "the plant that was drawn")
     except VehicleFileError as fault:
         name = "vehicle_overrides" if vehicle is nominal and overrides else "mismatch"

@@ -10,6 +10,7 @@ from uvms_core.signals import Array, to_nanoseconds
 from uvms_core.start import StartConfig
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.plausible.extents import bare_hull_extent
 from uvms_core.vehicle.postures import (
     STOWED,
     AnglesDeg,
@@ -21,6 +22,7 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
 from uvms_dynamics.simulation.integrator import JOINTS, QUATERNION, VELOCITY
 from uvms_dynamics.simulation.plant.mismatch import Mismatch
 from uvms_dynamics.simulation.water import CurrentConfig, velocity_at_start
+from uvms_dynamics.simulation.water.airy import wave_length
 from uvms_dynamics.simulation.water.currents import Speed, Turns
 
 
@@ -88,6 +90,35 @@ class PlantConfig(StartConfig):
                     f" the start, which is {depth:g} m deep (initial_position_m)"
                 )
         return self
+
+
+SHORTEST_WAVE = 2.0
+"""Length of a wave over that of the hull: in one as short the flow at the hull's centre is pi / 2
+times its mean along the hull (1 / sinc(pi L / lambda)), and says no more of it."""
+
+
+def check_waves(vehicle: Vehicle, config: PlantConfig) -> None:
+    """Check the waves against hull and seabed.
+
+    Raises:
+        ConfigError: the seabed of the vehicle file is not the bottom that waves feel, or a wave is
+            shorter than twice the hull, which takes the flow at its centre for all of it.
+    """
+    seabed = vehicle.environment.seabed_depth_m
+    hull = 2.0 * bare_hull_extent(vehicle.hull).largest_m
+    for i, wave in enumerate(config.current.waves):
+        length = wave_length(wave.period_s, wave.water_depth_m)
+        if length < SHORTEST_WAVE * hull:
+            raise ConfigError(
+                f"current.waves.{i}.period_s: a wave of {wave.period_s:g} s is {length:.3g} m long,"
+                f" less than {SHORTEST_WAVE:g} times the hull's {hull:.3g} m; the hull takes the"
+                " flow at its centre of buoyancy for all of it, which holds in long waves"
+            )
+        if seabed is not None and wave.water_depth_m != seabed:
+            raise ConfigError(
+                f"current.waves.{i}.water_depth_m: {wave.water_depth_m:g} m, but the vehicle's"
+                f" environment.seabed_depth_m is {seabed:g} m: the sea has one depth"
+            )
 
 
 def steps_in(period: int, config: PlantConfig, what: str) -> int:

@@ -42,6 +42,7 @@ class EventEffects:
         system: of the vehicle without events.
         state: of the integrator (nx,), which grasps and stuck joints change.
         brakes: go on with the system as it is.
+        step: of the integrator, ns.
 
     Attributes:
         system: the vehicle with its load.
@@ -55,9 +56,11 @@ class EventEffects:
         system: System,
         state: Array,
         brakes: Brakes,
+        step: int,
     ) -> None:
         self._vehicle, self._drift = vehicle, drift
         self._state, self._brakes = state, brakes
+        self.step = step
         self._whole = system.thrusters[:, SHARE].copy()
         self._stuck: Flags = np.zeros(vehicle.n_joints, dtype=np.bool_)
         self._pushes: list[Array] = []

@@ -2,7 +2,9 @@
 
 Each field has random numbers of its own, so that one that is added does not change the others'
 draws. Whatever is drawn, bodies stay possible: masses and inertias are scaled alike, which keeps
-the triangle inequality, and tables by a congruence S A S, which keeps them positive.
+the triangle inequality, added mass by a congruence S A S, which keeps it positive, and damping that
+couples axes as a whole, which keeps it dissipative. The lift of cross terms is no part of the added
+mass: it stays where that is drawn, also where the file gives both in one coefficient.
 """
 
 from typing import Any
@@ -14,6 +16,7 @@ from uvms_core.config import Config
 from uvms_core.rng import generator
 from uvms_core.signals import Array
 from uvms_core.vehicle import Hull, Link, Vehicle
+from uvms_core.vehicle.damping import PRODUCTS, CrossTerms, is_coupled, lift_alone
 from uvms_core.vehicle.fins import Fin
 from uvms_core.vehicle.plausible.water import NONE
 
@@ -37,7 +40,8 @@ class Mismatch(Config):
     )
     added_mass: float = _share("added mass of the hull, each axis by itself")
     damping: float = _share(
-        "linear and quadratic damping of the hull, each axis by itself, and the area of its fins"
+        "linear and quadratic damping of the hull and the area of its fins, each axis by itself;"
+        " one factor for them and cross_terms where a table or cross_terms couple the axes"
     )
     link_mass: float = _share("mass and inertia of each link; its volume stays")
     link_added_mass: float = _share("added mass of each link")
@@ -59,7 +63,7 @@ class Mismatch(Config):
         counts = {
             "mass": 1,
             "added_mass": 6,
-            "damping": 12,
+            "damping": 1 if is_coupled(vehicle.hull) else 12,
             "link_mass": links,
             "link_added_mass": links,
             "link_drag": 2,
@@ -96,12 +100,10 @@ def _hull(hull: Hull, draws: Draws, vehicle: Vehicle) -> Hull:
         changes |= _more_water(hull, draws["mass"], vehicle.environment.water_density_kg_m3)
     if "added_mass" in draws:
         changes["added_mass"] = _congruent(hull.added_mass, draws["added_mass"])
-    if "damping" in draws:
-        linear, quadratic = draws["damping"][:6], draws["damping"][6:]
-        changes["linear_damping"] = _scaled(hull.linear_damping, linear)
-        changes["quadratic_damping"] = _scaled(hull.quadratic_damping, quadratic)
-        changes["fins"] = tuple(_larger(fin, quadratic) for fin in hull.fins)
+        changes["cross_terms"] = lift_alone(hull)
     hull = hull.model_copy(update=changes)
+    if "damping" in draws:
+        hull = hull.model_copy(update=_damped(hull, draws["damping"]))
     if "weight_n" in draws:
         hull = hull.model_copy(update=_heavier(hull, draws["weight_n"], vehicle))
     shifts = {"cb_m": "buoyancy_centre_m", "cg_m": "gravity_centre_m"}
@@ -111,6 +113,27 @@ def _hull(hull: Hull, draws: Draws, vehicle: Vehicle) -> Hull:
         if field in draws
     }
     return hull.model_copy(update=moved)
+
+
+def _damped(hull: Hull, draw: float | list[float]) -> dict[str, Any]:
+    """Changes by draws for the 6 linear and 6 quadratic values, or by one for all of them."""
+    draws = draw if isinstance(draw, list) else [draw] * 12
+    linear, quadratic = draws[:6], draws[6:]
+    return {
+        "linear_damping": _scaled(hull.linear_damping, linear),
+        "quadratic_damping": _scaled(hull.quadratic_damping, quadratic),
+        "fins": tuple(_larger(fin, quadratic) for fin in hull.fins),
+        "cross_terms": _times(lift_alone(hull), 1.0 + draws[0]),
+    }
+
+
+def _times(terms: CrossTerms | None, factor: float) -> CrossTerms | None:
+    """Products, without those of the added mass, times a factor."""
+    if terms is None:
+        return None
+    given = {name: getattr(terms, name) for name in PRODUCTS}
+    changes = {name: factor * value for name, value in given.items() if value is not None}
+    return terms.model_copy(update=changes)
 
 
 def _larger(fin: Fin, draws: list[float]) -> Fin:
@@ -174,10 +197,9 @@ def _congruent(table: Any, draws: list[float]) -> list[list[float]]:
 
 
 def _scaled(damping: Any, draws: list[float]) -> Any:
-    """Damping by axis, each by its own factor; a table as a whole, so that it dissipates still."""
+    """Damping, each row by its factor; those of a table are alike."""
     values: Array = np.array(damping)
-    factors = 1.0 + np.array(draws)
-    return (factors * values if values.ndim == 1 else factors[0] * values).tolist()
+    return ((1.0 + np.array(draws)) * values.T).T.tolist()
 
 
 def _scale_coefficient(coefficient: dict[str, Any], share: float) -> None:

@@ -27,7 +27,12 @@ from uvms_dynamics.simulation.integrator import (
 )
 from uvms_dynamics.simulation.plant.as_built import as_built
 from uvms_dynamics.simulation.plant.brakes import Brakes
-from uvms_dynamics.simulation.plant.config import PlantConfig, initial_state, steps_in
+from uvms_dynamics.simulation.plant.config import (
+    PlantConfig,
+    check_waves,
+    initial_state,
+    steps_in,
+)
 from uvms_dynamics.simulation.plant.divergence import check_finite
 from uvms_dynamics.simulation.plant.effects import EventEffects
 from uvms_dynamics.simulation.plant.stability import check_plant
@@ -53,7 +58,8 @@ class Plant:
         nominal: the vehicle of the file. The plant's own (`built`) may differ, by the config.
         config: integration, start, water and mismatch.
         seed: of the run.
-        events: what happens to it; each at the first control tick at or after its time.
+        events: what happens to it; each at the first control tick at or after its time, a push at
+            the nearest plant step.
 
     Raises:
         ConfigError: periods are not multiples of the step, the step is unstable with the vehicle or
@@ -65,12 +71,13 @@ class Plant:
     ) -> None:
         self.built = as_built(nominal, config, seed)
         vehicle = self.built.vehicle
-        check_events(events, vehicle)
-        check_plant(vehicle, config, events)
         self._vehicle, self._config = vehicle, config
         self._tethered = vehicle.tether is not None
         self._period = to_nanoseconds(config.control_period_s)
         self._step = to_nanoseconds(config.step_s)
+        check_events(events, vehicle, self._step, self._period)
+        check_waves(vehicle, config)
+        check_plant(vehicle, config, events)
         steps = steps_in(self._period, config, "control_period_s")
         self._sensors = SensorSuite(vehicle, seed, lambda p, name: steps_in(p, config, name))
         system = make_system(vehicle, config.flow)
@@ -79,10 +86,11 @@ class Plant:
         self._scratch = make_scratch(system)
         self._brakes = Brakes(vehicle, system, self._scratch)
         self._state = initial_state(vehicle, config)
-        self._effects = EventEffects(vehicle, self._drift, system, self._state, self._brakes)
-        self._schedule = Schedule()
+        self._effects = EventEffects(
+            vehicle, self._drift, system, self._state, self._brakes, self._step
+        )
+        self._schedule = Schedule(self._step, self._period)
         self._happened: list[Happened] = []
-        self._events = 0
         self._states = np.empty((steps + 1, self._state.shape[0]))
         self._rates = np.empty_like(self._states)
         self._effort = np.zeros(vehicle.n_joints)
@@ -126,6 +134,7 @@ class Plant:
         fit the vehicle or the plant as it is, or where its time is past; nothing happens then.
         """
         event.check(self._vehicle)
+        event.check_times(self._step, self._period)
         check_payloads((*self._schedule.pending, event), self._effects.holds)
         if to_nanoseconds(event.at_s) < self._stamp:
             raise ConfigError(
@@ -143,12 +152,31 @@ class Plant:
 
     def _plan(self, event: Event) -> None:
         if isinstance(event, SensorEvent):
-            self._sensors.add_fault(event, self._events)
+            self._sensors.add_fault(event)
         self._schedule.add(event)
-        self._events += 1
 
     def _let_happen(self) -> None:
         self._happened += self._schedule.run(self._stamp, self._effects)
+
+    def _advance(self, thrust: Array, began: int) -> None:
+        """The control period that ends at the stamp, in pieces between which pushes change.
+
+        Accelerations at such a step are those just before, as at a control tick.
+        """
+        first = 0
+        for stamp in self._schedule.within(began, self._stamp):
+            last = (stamp - began) // self._step
+            self._piece(thrust, first, last, stamp)
+            self._happened += self._schedule.run(stamp, self._effects)
+            first = last
+        self._piece(thrust, first, len(self._states) - 1, self._stamp)
+
+    def _piece(self, thrust: Array, first: int, last: int, ends: int) -> None:
+        rows = slice(first, last + 1)
+        before = self._rates[first].copy() if first else None
+        self._integrate(thrust, self._states[rows], self._rates[rows], ends)
+        if before is not None:
+            self._rates[first] = before
 
     def _drift(self) -> Array:
         """Velocity (3,) of the water's frame over ground at the present stamp, in the world."""
@@ -177,7 +205,7 @@ class Plant:
         self._effort = np.clip(joints.effort, -limit, limit)
         began, self._stamp = self._stamp, self._stamp + self._period
         realised = self._drives.realised(thruster.thrust)
-        self._integrate(np.ascontiguousarray(realised), self._states, self._rates)
+        self._advance(np.ascontiguousarray(realised), began)
         stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
         self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
         self._let_happen()
@@ -201,21 +229,21 @@ class Plant:
         idle = np.zeros(self._vehicle.n_thrusters)
         self._commands = ThrusterCommand(0, idle), JointCommand(0, self._effort)
         self._safe = True, True
-        self._integrate(idle, self._states[:1], self._rates[:1])
+        self._integrate(idle, self._states[:1], self._rates[:1], 0)
         self._frame = self._sample((0,), self._states[:1], self._rates[:1])
         self._let_happen()
 
-    def _integrate(self, thrust: Array, states: Array, rates: Array) -> None:
-        """As many steps as the tables have rows after the first; the last is at the stamp."""
+    def _integrate(self, thrust: Array, states: Array, rates: Array, ends: int) -> None:
+        """As many steps as the tables have rows after the first; the last is at `ends`, ns."""
         step = to_seconds(self._step)
-        began = to_seconds(self._stamp - (len(states) - 1) * self._step)
+        began = to_seconds(ends - (len(states) - 1) * self._step)
         if self._safe[1] and self._brakes.exist and len(states) > 1:
             self._brakes.advance(self._state, thrust, step, states, rates, began)
         else:
             system, rows = tuple(self._effects.moving), (tuple(self._scratch), states, rates)
             advance(system, self._state, thrust, self._effort, step, *rows, began)
         self._rate = rates[-1].copy()
-        check_finite(self._vehicle, self._config.step_s, self._stamp, states, rates)
+        check_finite(self._vehicle, self._config.step_s, ends, states, rates)
 
     def _sample(self, stamps: tuple[int, ...], states: Array, rates: Array) -> SensorFrame:
         system = self._system

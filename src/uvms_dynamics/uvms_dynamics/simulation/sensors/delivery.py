@@ -32,6 +32,10 @@ class Delivery:
         """What comes up to `now`, ns, in order, when the sensor has made these samples."""
         if not (self.latency or self.drop_out_rate or self._waiting):
             return tuple(samples)
+        return tuple(sample for _, sample in self.arrivals(samples, now))
+
+    def arrivals(self, samples: Sequence[Any], now: int) -> tuple[tuple[int, Any], ...]:
+        """As `deliver`, each sample with the time, ns, at which it comes."""
         for sample in samples:
             if sample.stamp > 0 and self._rng.random() < self.drop_out_rate:
                 continue
@@ -40,5 +44,5 @@ class Delivery:
             self._waiting.append((max(arrival, last), sample))  # none overtakes another
         come = []
         while self._waiting and self._waiting[0][0] <= now:
-            come.append(self._waiting.popleft()[1])
+            come.append(self._waiting.popleft())
         return tuple(come)

@@ -36,7 +36,7 @@ class Fault(ABC):
     """A fault of one sensor between two stamps."""
 
     delay = 0
-    """How much later than its stamp a sample comes, ns."""
+    """How much later a sample comes than it would without the fault, ns."""
 
     def __init__(self, event: SensorEvent, rng: np.random.Generator) -> None:
         self._begin = to_nanoseconds(event.at_s)
@@ -225,32 +225,42 @@ class FaultLine:
     def __init__(self, seed: int) -> None:
         self._seed = seed
         self._faults: list[Fault] = []
+        self._alike: dict[str, int] = {}
         self._waiting: deque[tuple[int, Any]] = deque()
         self._last = -1
 
-    def add(self, event: SensorEvent, number: int) -> None:
-        """A fault more; `number` is its own in the run."""
-        rng = generator(self._seed, f"events/{number}/{event.sensor}")
+    def add(self, event: SensorEvent) -> None:
+        """A fault more.
+
+        Its random numbers go by sensor, kind and begin, and by its number among faults that are
+        alike in these: no other event changes them.
+        """
+        key = f"{event.sensor}/{event.fault}/{to_nanoseconds(event.at_s)}"
+        self._alike[key] = self._alike.get(key, -1) + 1
+        rng = generator(self._seed, f"events/{key}/{self._alike[key]}")
         self._faults.append(MAKERS[type(event)](event, rng))
 
-    def pass_on(self, samples: Sequence[Any], now: int) -> tuple[Any, ...]:
-        """The samples that have come by `now`, ns, of those that were measured since the last."""
-        for sample in samples:
-            self._take(sample)
+    def pass_on(self, arrivals: Sequence[tuple[int, Any]], now: int) -> tuple[Any, ...]:
+        """The samples that have come by `now`, ns.
+
+        `arrivals` are those that the sensor has delivered since the last call, with the time, ns,
+        at which they come without faults: its own latency is in it.
+        """
+        for arrival, sample in arrivals:
+            self._take(arrival, sample)
         ready = []
         while self._waiting and self._waiting[0][0] <= now:
             ready.append(trust(self._waiting.popleft()[1]))
         return tuple(ready)
 
-    def _take(self, sample: Any) -> None:
-        delay = 0
+    def _take(self, arrival: int, sample: Any) -> None:
         for fault in self._faults:
             if not fault.covers(sample.stamp):
                 fault.see(sample)
                 continue
-            delay += fault.delay
+            arrival += fault.delay
             sample = fault.change(sample)
             if sample is None:
                 return
-        self._last = max(self._last, sample.stamp + delay)
+        self._last = max(self._last, arrival)
         self._waiting.append((self._last, sample))

@@ -86,10 +86,9 @@ class SensorSuite:
         self._now = -1
         self._newest: dict[str, int] = {}
 
-    def add_fault(self, event: SensorEvent, number: int) -> None:
-        """Let a sensor fail; `number` is the event's own in the run."""
-        line = self._lines.setdefault(event.sensor, FaultLine(self._seed))
-        line.add(event, number)
+    def add_fault(self, event: SensorEvent) -> None:
+        """Let a sensor fail."""
+        self._lines.setdefault(event.sensor, FaultLine(self._seed)).add(event)
 
     def sample(self, trajectory: Trajectory, q: Array, q_dot: Array, effort: Array) -> SensorFrame:
         """Samples on a trajectory that is finite, and those of the encoders at its end."""
@@ -100,14 +99,15 @@ class SensorSuite:
         }
         joints = checks.trust(self._encoders.sample(self._now, q, q_dot, effort))
         if ENCODERS in self._lines:
-            (joints,) = self._lines[ENCODERS].pass_on((joints,), self._now)
+            (joints,) = self._lines[ENCODERS].pass_on(((self._now, joints),), self._now)
         return SensorFrame(samples, joints, self._gaps(samples, before))
 
     def _deliver(self, name: str, samples: tuple[Any, ...]) -> tuple[Any, ...]:
         """What comes now of what a sensor has measured, with the faults that events give it."""
-        come = self.deliveries[name].deliver(samples, self._now)
-        line = self._lines.get(name)
-        return come if line is None else line.pass_on(come, self._now)
+        delivery, line = self.deliveries[name], self._lines.get(name)
+        if line is None:
+            return delivery.deliver(samples, self._now)
+        return line.pass_on(delivery.arrivals(samples, self._now), self._now)
 
     def _gaps(self, samples: Mapping[str, tuple[Any, ...]], before: int) -> SensorGaps | None:
         """What is missing or late of the samples since the stamp before."""
