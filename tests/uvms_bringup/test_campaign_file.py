@@ -287,4 +287,11 @@ def test_the_command_says_what_is_wrong_and_makes_no_folder(tmp_path, monkeypatc
     assert "--select 'gust'" in capsys.readouterr().err
     assert main(["campaign", str(tmp_path / "small.yaml"), "--resume"]) == 2
     assert "--resume: say with --output DIR" in capsys.readouterr().err
+    small = str(tmp_path / "small.yaml")
+    for picture, message in (
+        ("x.foo", "--picture x.foo: '.foo' is no kind of image; choose from ."),
+        ("none/x.png", "--picture none/x.png: there is no folder none"),
+    ):
+        assert main(["campaign", small, "--picture", picture]) == 2
+        assert message in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()

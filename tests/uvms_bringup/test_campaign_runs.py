@@ -6,6 +6,7 @@ import signal
 import socket
 import subprocess
 import sys
+import threading
 import time
 from contextlib import suppress
 
@@ -223,9 +224,28 @@ def test_an_unreachable_scheduler_is_named_before_anything_else(file, tmp_path):
         address = f"tcp://127.0.0.1:{silent.getsockname()[1]}"
         with pytest.raises(CampaignError, match=re.escape(address)):
             conducted(file, tmp_path / "a", scheduler=address)
-    with pytest.raises(CampaignError, match="no scheduler answers there"):
+    with pytest.raises(CampaignError, match="this is no address: missing port number"):
         conducted(file, tmp_path / "b", scheduler="nowhere")
     assert not (tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize("answer", [b"SSH-2.0-server\r\n", b""])
+def test_another_program_is_not_taken_for_a_slow_scheduler(file, tmp_path, answer):
+    with socket.socket() as other:
+        other.bind(("127.0.0.1", 0))
+        other.listen()
+
+        def greet():
+            with suppress(OSError):
+                while True:
+                    with other.accept()[0] as one:
+                        one.sendall(answer)
+
+        threading.Thread(target=greet, daemon=True).start()
+        address = f"tcp://127.0.0.1:{other.getsockname()[1]}"
+        with pytest.raises(CampaignError, match="what answers there is no dask scheduler") as fault:
+            conducted(file, tmp_path / "a", scheduler=address)
+    assert f"within {PATIENCE_S:g} s" not in str(fault.value)
 
 
 def test_a_run_that_raises_is_a_row_with_its_reason(tmp_path):

@@ -131,6 +131,27 @@ class Results:
             raise CampaignError(f"--picture {file}: cannot be written: {fault}") from fault
 
 
+def check_picture(file: str) -> None:
+    """Find out whether `Results.draw` can write this file, before anything runs.
+
+    Raises:
+        CampaignError: its ending is no kind of image, or its folder is not there.
+    """
+    from matplotlib.backend_bases import FigureCanvasBase
+
+    kinds = sorted(FigureCanvasBase.get_supported_filetypes())
+    path = Path(file)
+    if path.suffix[1:].lower() not in kinds:
+        raise CampaignError(
+            f"--picture {file}: {path.suffix or 'no ending'!r} is no kind of image; choose from"
+            f" {', '.join(f'.{kind}' for kind in kinds)}"
+        )
+    if not path.parent.is_dir():
+        raise CampaignError(f"--picture {file}: there is no folder {path.parent}")
+    if path.is_dir():
+        raise CampaignError(f"--picture {file}: is a folder")
+
+
 def write_text(path: Path, text: str) -> None:
     """Write a file in the place of the one before; all of it or nothing.
 

@@ -53,11 +53,14 @@ def run(options: Namespace) -> int:
 
     from uvms_bringup.campaign.conduct import Conduct
     from uvms_bringup.campaign.file import load_campaign
+    from uvms_bringup.campaign.results import check_picture
     from uvms_bringup.errors import CampaignError
     from uvms_bringup.folder import new_folder
 
     if options.resume and not options.output:
         raise CampaignError("--resume: say with --output DIR which campaign to go on with")
+    if options.picture:
+        check_picture(options.picture)
     campaign = load_campaign(options.campaign)
     folder = Path(options.output or new_folder(campaign.campaign)).resolve()
     conduct = Conduct(
