@@ -67,7 +67,7 @@ def _run(options: Namespace) -> dict[str, Any] | None:
     folder = Path(options.output or new_folder(campaign.campaign)).resolve()
     if options.select != "*":
         options.page = ""  # half a table would look like a whole one
-    print(f"{campaign.campaign}: {campaign.description}", flush=True)
+    print(f"{campaign.campaign}: {campaign.description}".rstrip(": "), flush=True)
     conduct = Conduct(
         options.workers,
         resume=options.resume,

@@ -155,7 +155,10 @@ class Conduct:
 def _size(chosen: Sequence[Variant]) -> str:
     """How many runs there are, in words."""
     count = sum(len(one.seeds) for one in chosen)
-    return f"{count:,} runs: {len(chosen):,} cases, combinations and baselines by their seeds"
+    words = "1 run" if count == 1 else f"{count:,} runs"
+    if len(chosen) == 1:
+        return words
+    return f"{words}: {len(chosen):,} combinations of cases, grids and baselines with their seeds"
 
 
 def _written(campaign: Campaign, folder: Path, journal: Journal) -> Results:

@@ -71,7 +71,7 @@ def run(options: Namespace) -> int:
         options.logs,
         lambda line: print(line, flush=True),
     )
-    print(f"{campaign.campaign}: {campaign.description}", flush=True)
+    print(f"{campaign.campaign}: {campaign.description}".rstrip(": "), flush=True)
     results, stopped = conduct.run(campaign, folder, options.command_line)
     print(text(results))
     if options.picture and results.rows:
