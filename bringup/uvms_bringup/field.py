@@ -67,8 +67,13 @@ def _run(options: Namespace) -> dict[str, Any] | None:
     folder = Path(options.output or new_folder(campaign.campaign)).resolve()
     if options.select != "*":
         options.page = ""  # half a table would look like a whole one
-    print(f"{campaign.campaign}: {campaign.description}\nresults in {folder}", flush=True)
-    conduct = Conduct(options.workers, resume=options.resume, select=options.select)
+    print(f"{campaign.campaign}: {campaign.description}".rstrip(": "), flush=True)
+    conduct = Conduct(
+        options.workers,
+        resume=options.resume,
+        select=options.select,
+        say=lambda line: print(line, flush=True),
+    )
     results, stopped = conduct.run(campaign, folder, "make field")
     if stopped is not None:
         print(

@@ -89,6 +89,13 @@ class Scenario(Config):
             )
         return name
 
+    @field_validator("events", mode="before")
+    @classmethod
+    def _are_events(cls, given: Any) -> Any:
+        if not isinstance(given, list | tuple):
+            raise ValueError("write a list of events; [] for none")
+        return given
+
     @field_validator("navigation", "observer", "planner", "control", "allocation")
     @classmethod
     def _has_its_part(cls, own: PluginConfig) -> PluginConfig:

@@ -86,6 +86,8 @@ class Session:
     claim: Claim
     cast: Cast = field(default_factory=Cast)
     quiet: bool = False
+    ended_by: list[UvmsError] = field(default_factory=list)
+    """What ended the run before its end; filled while it runs."""
 
     def run_simulation(self) -> dict[str, Any]:
         """`uvms simulate`: returns the summary; as `run_graph`."""
@@ -145,6 +147,7 @@ class Session:
                     run(log, ending, progress)
                 except UvmsError as reason:
                     fault = reason
+                    self.ended_by.append(reason)
                 finally:
                     line.end()
                     clock.stop()

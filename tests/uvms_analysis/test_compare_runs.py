@@ -10,6 +10,8 @@ from uvms_analysis.compare import compare
 from uvms_analysis.compare.compare import names_of
 from uvms_analysis.compare.table import as_text, differences, unit
 from uvms_analysis.errors import LogError
+from uvms_analysis.summary import summarise
+from uvms_bringup.cli import main
 
 
 @pytest.fixture(scope="module")
@@ -62,6 +64,68 @@ def test_differences_units_and_ratio():
     ]
     assert unit("self_disturbance.moment_rms_nm") == "N m"
     assert unit("outcome") == ""
+
+
+def damaged(folder, found, work):
+    """A copy of a run whose log went through `work`, with the summary of the whole one."""
+    log = folder / "run.mcap"
+    folder.mkdir()
+    log.write_bytes(work(bytearray((found / "run.mcap").read_bytes())))
+    summary = summarise(found / "run.mcap", wall_s=1.0)
+    (folder / "summary.json").write_text(json.dumps({**summary, "thrust_rms_n": 12345.0}))
+    return folder
+
+
+def flipped(data):
+    data[len(data) // 3] ^= 1
+    return data
+
+
+@pytest.mark.parametrize("work", [flipped, lambda data: data[: len(data) // 2]])
+def test_a_damaged_log_is_told_and_its_old_summary_left_aside(logs, tmp_path, capsys, work):
+    bad = damaged(tmp_path / "bad", logs / "one", work)
+    assert main(["compare", str(logs / "one"), str(bad), "--output", str(tmp_path / "out")]) == 0
+    out = capsys.readouterr().out
+    page = (tmp_path / "out" / "compare.html").read_text()
+    for text in (out, page):
+        assert re.search(r"bad: its log is not complete: \S", text)
+        assert "bad: summary.json is left aside, and its values are made from the log" in text
+        assert "12345" not in text
+
+
+def test_a_whole_log_keeps_its_summary(logs, tmp_path):
+    same = damaged(tmp_path / "same", logs / "one", lambda data: data)
+    found = compare([logs / "one", same], tmp_path / "out")
+    assert not any("left aside" in text for text in found.warnings)
+    assert {row.name: row.values[1] for row in found.rows}["thrust_rms_n"] == 12345.0
+
+
+def test_vehicle_and_scenario_are_named_even_where_they_are_the_same(logs, tmp_path):
+    vehicle, scenario = compare([logs / "one", logs / "two"], tmp_path).rows[:2]
+    assert (vehicle.name, scenario.name) == ("vehicle", "scenario")
+    assert vehicle.values[0] == vehicle.values[1] is not None
+
+
+def test_lines_stay_within_the_terminal_and_fields_of_one_run_are_left_out():
+    one = {"reasons": ["x" * 300], "events": ["y" * 90], "node_counters.a.refused": 1, "n": 1.0}
+    two = {"reasons": [], "events": ["z" * 200], "node_counters.b.refused": 2, "n": 2.0}
+    rows = list(differences([one, two]))
+    assert [row.name for row in rows] == ["reasons", "events", "n"]
+    lines = as_text(("first", "second"), rows, 80).splitlines()
+    assert max(map(len, lines)) <= 80
+    assert lines[1].count("…") == 1
+    assert lines[3].split() == ["n", "1", "2"]
+
+
+def test_a_campaign_is_not_taken_for_a_run(logs, tmp_path):
+    (tmp_path / "campaign.yaml").write_text("campaign: mine\n")
+    with pytest.raises(LogError, match=r"is a campaign without logs; run it with --logs all, or"):
+        compare([tmp_path, logs / "one"], tmp_path / "out")
+    own = tmp_path / "logs" / "run-1"
+    own.mkdir(parents=True)
+    (own / "run.mcap").touch()
+    with pytest.raises(LogError, match=rf"give runs of it, such as {re.escape(str(own))}$"):
+        compare([tmp_path, logs / "one"], tmp_path / "out")
 
 
 def test_names_tell_the_runs_apart(tmp_path):

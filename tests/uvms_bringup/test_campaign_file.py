@@ -159,7 +159,13 @@ def test_draws_have_their_distributions_and_do_not_shift_one_another():
             "draw.x.gauss: Extra inputs are not permitted; known names here: choice, loguniform,",
         ),
         ("scenario: hover\ndraw: {x: {}}", "give one of uniform, normal, loguniform, choice; 0"),
-        ("scenario: hover\nvary: {x: []}", "vary.x"),
+        ("scenario: hover\nvary: {x: []}", "'x': write the values to try, as [VALUE, VALUE] or"),
+        ("scenario: hover\nvary: {x: 3}", "'x': write the values to try, as [VALUE, VALUE] or"),
+        ("scenario: hover\nvary: 3", "vary: write a mapping, such as {PATH: [VALUE, VALUE]}"),
+        ("scenario: hover\nseeds: 1000000000", "seeds: 1,000,000,000 seeds; a campaign has"),
+        ("scenario: hover\nseeds: [9223372036854775808]", "seeds: a seed is at most 92233720"),
+        ("scenario: hover\nrequire: {x.max: 3}", "'x.max': write a bound as {max: 3}, with one or"),
+        ("scenario: hover\nevents: wind", "events: write a list of events; [] for none"),
         ("scenario: hover\nrequire: {x: {}}", "require.x: give at least one of min, max, equals"),
         ("scenario: hover\nrequire: {x: {min: 2, max: 1}}", "min 2 is greater than max 1"),
         ("scenario: hover\ncases: {a/b: {}}", "'a/b': start a name with a letter or digit"),
@@ -182,6 +188,44 @@ def test_a_wrong_file_names_the_field(tmp_path, text, message):
         ("vary: {control.observer: [true, 7]}", "case 'run[control.observer=7]': scenario hover"),
         ("draw: {plant.step: {uniform: [0, 1]}}", "plant.step: Extra inputs"),
         ("require: {roll_deg.most: {max: 1}}", "'roll_deg.most' is no field of a summary"),
+        (
+            "require: {outcome: {equals: complete}}",
+            "outcome: 'complete': choose from completed, giv",
+        ),
+        (
+            "require: {outcome: {one_of: [completed, done]}}",
+            "outcome: 'done': choose from completed",
+        ),
+        (
+            "require: {outcome: {max: 3}}",
+            "outcome: min and max are for numbers, and this is a text",
+        ),
+        (
+            "require: {completed: {max: 1}}",
+            "completed: min and max are for numbers, and this is true",
+        ),
+        (
+            "require: {seed: {equals: one}}",
+            "'one' is a text, and the field is a number",
+        ),
+        ("set: {goal.path: line}", "goal.path: write a group of values, {NAME: VALUE}, with names"),
+        ("set: {events: null}", "events: write a list of events; [] for none"),
+        (
+            "draw: {duration_s: {uniform: [1, 1000001]}}",
+            "draw: duration_s: the greatest value of uniform is 1000001.0, which is not allowed",
+        ),
+        (
+            "draw: {duration_s: {loguniform: [1, 1000001]}}",
+            "draw: duration_s: the greatest value of loguniform is 1000001.0, which",
+        ),
+        (
+            "draw: {duration_s: {choice: [1, 2, 2000000]}}",
+            "draw: duration_s: choice 3 is 2000000, w",
+        ),
+        (
+            "draw: {duration_s: {normal: [10, 4]}}",
+            "draw: duration_s: normal, mean - 3 standard deviations, is -2.0, which is not allowed",
+        ),
         ("vehicle: none", "unknown vehicle 'none'"),
         (
             "baselines: {off: {control.laws: 1}}",
@@ -194,6 +238,33 @@ def test_a_wrong_path_or_value_is_found_before_anything_runs(tmp_path, text, mes
     with pytest.raises(CampaignError) as fault:
         check_variants("small", variants(made))
     assert message in str(fault.value)
+
+
+def test_a_campaign_of_too_many_runs_is_refused_before_they_are_listed(tmp_path):
+    values = list(range(200))
+    text = f"scenario: hover\nvary: {{a: {values}, b: {values}, c: {values}}}"
+    with pytest.raises(CampaignError) as fault:
+        variants(campaign(tmp_path, text), "none")
+    assert str(fault.value) == (
+        "campaign small: 8,000,000 runs, and at most 100,000 are allowed (case 'run' alone:"
+        " 8,000,000 = 200 of a x 200 of b x 200 of c x 1 seed); vary fewer values, or draw them by"
+        " seed instead of varying them"
+    )
+
+
+def test_good_requirements_and_draws_pass_the_check(tmp_path):
+    text = """scenario: hover
+seeds: 3
+draw: {duration_s: {uniform: [1, 2]}, vehicle.hull.cg_m.2: {normal: [0.012, 0.0005]}}
+require: {outcome: {one_of: [completed, error]}, roll_deg.max: {max: 3}, completed: {equals: true}}
+"""
+    check_variants("small", variants(campaign(tmp_path, text)))
+
+
+def test_the_number_of_runs_is_said_first(tmp_path, capsys):
+    file = write(tmp_path, "scenario: hover\nseeds: 12\nset: {duration_s: -1}")
+    assert main(["campaign", str(file)]) == 2
+    assert "12 runs" in capsys.readouterr().out
 
 
 def test_a_requirement_on_what_depends_on_the_run_is_allowed(tmp_path):
@@ -216,4 +287,11 @@ def test_the_command_says_what_is_wrong_and_makes_no_folder(tmp_path, monkeypatc
     assert "--select 'gust'" in capsys.readouterr().err
     assert main(["campaign", str(tmp_path / "small.yaml"), "--resume"]) == 2
     assert "--resume: say with --output DIR" in capsys.readouterr().err
+    small = str(tmp_path / "small.yaml")
+    for picture, message in (
+        ("x.foo", "--picture x.foo: '.foo' is no kind of image; choose from ."),
+        ("none/x.png", "--picture none/x.png: there is no folder none"),
+    ):
+        assert main(["campaign", small, "--picture", picture]) == 2
+        assert message in capsys.readouterr().err
     assert not (tmp_path / "runs").exists()

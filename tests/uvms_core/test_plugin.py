@@ -162,7 +162,7 @@ def test_an_error_of_the_project_s_own_tree_passes_as_it_is():
     [
         ({"gain": 11.0}, "gain: Input should be less than or equal to 10 (got 11.0)"),
         ({"speed": 1.0}, "speed: Extra inputs are not permitted; known names here: gain"),
-        (3, "valid dictionary"),
+        (3, "write a group of values, {NAME: VALUE}, with names of gain (got 3)"),
     ],
 )
 def test_wrong_parameters_name_the_part_the_value_and_what_is_allowed(parameters, message):

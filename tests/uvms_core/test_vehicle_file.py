@@ -229,7 +229,7 @@ def test_a_key_given_twice(tmp_path):
 
 
 def test_an_empty_file(tmp_path):
-    with pytest.raises(VehicleFileError, match="Input should be a valid dictionary"):
+    with pytest.raises(VehicleFileError, match="write a group of values"):
         load_vehicle(written(tmp_path, ""))
 
 

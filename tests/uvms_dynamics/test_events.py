@@ -223,6 +223,7 @@ def test_events_at_run_time_are_those_of_a_scenario():
         ("{thruster: main}", "either effectiveness .* or stuck_at_n"),
         ("{thruster: main, stuck_at_n: 500}", "stuck_at_n 500: thruster main gives -98 to 98 N"),
         ("{joint: knee, stuck: true}", "joint 'knee': choose one of swing, shoulder"),
+        ("{sensor: dvl}", "fault: required; choose one of silent, zeros"),
         ("{sensor: dvl, fault: deaf}", "fault 'deaf': choose one of silent, zeros"),
         ("{sensor: sonar, fault: silent}", "sensor 'sonar': choose one of imu, dvl"),
         ("{sensor: imu, fault: bias, bias: 1}", "field: the imu measures quaternion, angular"),

@@ -199,11 +199,32 @@ def _connected(address: str) -> Client:
     thread.join(PATIENCE_S)
     if found:
         return found[0]
-    why = f": {faults[0]}" if faults else ""
     raise CampaignError(
-        f"--scheduler {address}: no scheduler answers there within {PATIENCE_S:g} s{why}; start"
-        " one with `dask scheduler`, and its workers with `dask worker ADDRESS`"
+        f"--scheduler {address}: {_why_not(faults)}; start one with `dask scheduler`, and its"
+        " workers with `dask worker ADDRESS`"
     )
+
+
+def _why_not(faults: Sequence[Exception]) -> str:
+    """Why there is no client, in words."""
+    chain = list(_causes(faults[0])) if faults else []
+    wrong = next((one for one in chain if isinstance(one, ValueError)), None)
+    if wrong is not None:
+        return f"this is no address: {wrong}; write tcp://HOST:8786"
+    if not chain or any(isinstance(one, TimeoutError) for one in chain):
+        return f"no scheduler answers there within {PATIENCE_S:g} s"
+    # Of any other program's answer, dask takes the first bytes for a length, and may then ask for
+    # more memory than there is.
+    why = "" if isinstance(chain[-1], MemoryError) else f" ({chain[-1]})"
+    return f"what answers there is no dask scheduler, or one of another version{why}"
+
+
+def _causes(fault: BaseException) -> Iterator[BaseException]:
+    """An error and those that it was raised from."""
+    found: BaseException | None = fault
+    while found is not None:
+        yield found
+        found = found.__cause__
 
 
 def _drained(done: "queue.SimpleQueue[Future]") -> list[Future]:

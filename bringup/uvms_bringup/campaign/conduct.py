@@ -2,8 +2,9 @@
 
 import json
 import os
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -12,7 +13,8 @@ from uvms_bringup.campaign.file import CAMPAIGN_FILE, Campaign, read_campaign
 from uvms_bringup.campaign.journal import Journal
 from uvms_bringup.campaign.plan import Run, Variant, runs, variants
 from uvms_bringup.campaign.progress import CampaignProgress
-from uvms_bringup.campaign.results import Results
+from uvms_bringup.campaign.results import Results, write_text
+from uvms_bringup.campaign.row import Row, is_failed
 from uvms_bringup.campaign.worker import Logs
 from uvms_bringup.claim import Claim, Holder, TakenError
 from uvms_bringup.errors import CampaignError
@@ -22,6 +24,10 @@ from uvms_bringup.stopped import SignalWatch, Stopped
 from uvms_core.yaml_text import dump_yaml
 
 CLAIM_FILE = ".campaign.lock"
+
+
+def _silent(line: str) -> None:
+    """Says nothing."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +40,7 @@ class Conduct:
         resume: go on with what is in the folder.
         select: shell pattern of the cases to run.
         logs: of which runs a log is kept.
-        notes: what there is to say before the runs begin; filled by `run`.
+        say: takes each line that there is to say before the runs begin.
     """
 
     workers: int = 1
@@ -42,7 +48,7 @@ class Conduct:
     resume: bool = False
     select: str = "*"
     logs: Logs = "none"
-    notes: list[str] = field(default_factory=list)
+    say: Callable[[str], None] = _silent
 
     def run(self, campaign: Campaign, folder: Path, command: str) -> tuple[Results, Stopped | None]:
         """Run what is not there yet; returns the results, and the signal that ended it, if any.
@@ -51,19 +57,26 @@ class Conduct:
             CampaignError: the campaign or its folder is not right, or the scheduler is gone; what
                 was computed by then stays in the folder.
         """
+        if self.resume and not (folder / CAMPAIGN_FILE).is_file():
+            raise CampaignError(
+                f"--resume --output {folder}: there is no campaign to go on with (no"
+                f" {CAMPAIGN_FILE}); leave out --resume to begin one there"
+            )
         chosen = variants(campaign, self.select)
+        self.say(_size(chosen))
         self._try_scheduler()
         digests = check_variants(campaign.campaign, chosen)
         claim = _claimed(folder, command)
         try:
             journal = self._journal(campaign, digests, folder)
+            self.say(f"results in {folder}")
             try:
-                stopped = self._run(campaign, chosen, folder, journal)
-            finally:
-                journal.close()
-                results = Results(campaign, variants(campaign), folder, journal.rows)
-                results.write()
-            return results, stopped
+                stopped = self._run(chosen, folder, journal)
+            except BaseException:
+                with suppress(CampaignError):  # what ended the campaign is what counts
+                    _written(campaign, folder, journal)
+                raise
+            return _written(campaign, folder, journal), stopped
         finally:
             claim.release()
 
@@ -87,7 +100,7 @@ class Conduct:
             self._note_revision(journal)
         else:
             text = f"# A copy with full paths; what was run.\n{dump_yaml(plain(campaign))}"
-            (folder / CAMPAIGN_FILE).write_text(text, encoding="utf-8")
+            write_text(folder / CAMPAIGN_FILE, text)
         for case, begun in journal.head.get("digests", {}).items():
             if digests.get(case, begun) != begun:
                 raise CampaignError(
@@ -100,37 +113,60 @@ class Conduct:
     def _note_revision(self, journal: Journal) -> None:
         begun = journal.head.get("revision")
         if begun != git_revision():
-            self.notes.append(
-                f"the rows that are there are from revision {begun}, this is {git_revision()}"
+            self.say(
+                f"note: the rows that are there are from revision {begun}, this is {git_revision()}"
             )
 
-    def _run(
-        self, campaign: Campaign, chosen: Sequence[Variant], folder: Path, journal: Journal
-    ) -> Stopped | None:
-        left = [run for run in runs(tuple(chosen)) if run.key not in journal.rows]
-        total = sum(len(one.seeds) for one in chosen)
+    def _run(self, chosen: Sequence[Variant], folder: Path, journal: Journal) -> Stopped | None:
+        everything = list(runs(tuple(chosen)))
+        left = [run for run in everything if not journal.is_made(run.key)]
+        made = [journal.rows[run.key] for run in everything if journal.is_made(run.key)]
         if not left:
             return None
         with SignalWatch() as signals:
             signals.begin()
             try:
-                self._make(left, total, folder, journal, signals)
+                self._make(left, made, folder, journal, signals)
             except Stopped as stopped:
                 return stopped
         return None
 
     def _make(
-        self, left: Sequence[Run], total: int, folder: Path, journal: Journal, signals: SignalWatch
+        self,
+        left: Sequence[Run],
+        made: Sequence[Row],
+        folder: Path,
+        journal: Journal,
+        signals: SignalWatch,
     ) -> None:
         from uvms_bringup.campaign.cluster import Cluster  # takes a second to import
 
         with Cluster(min(self.workers, len(left)), self.scheduler) as cluster:
             signals.check()
-            self.notes.extend(cluster.check(git_revision()))
-            with CampaignProgress(total, total - len(left)) as progress:
+            for note in cluster.check(git_revision()):
+                self.say(f"note: {note}")
+            failed = sum(map(is_failed, made))
+            with CampaignProgress(len(left) + len(made), len(made), failed) as progress:
                 for row in cluster.rows(iter(left), folder, self.logs, signals.check):
                     journal.add(row)
-                    progress.add(row["passed"] or bool(row["beside"]))
+                    progress.add(is_failed(row))
+
+
+def _size(chosen: Sequence[Variant]) -> str:
+    """How many runs there are, in words."""
+    count = sum(len(one.seeds) for one in chosen)
+    words = "1 run" if count == 1 else f"{count:,} runs"
+    if len(chosen) == 1:
+        return words
+    return f"{words}: {len(chosen):,} combinations of cases, grids and baselines with their seeds"
+
+
+def _written(campaign: Campaign, folder: Path, journal: Journal) -> Results:
+    """The results, in their files."""
+    journal.close()
+    results = Results(campaign, variants(campaign), folder, journal.rows)
+    results.write()
+    return results
 
 
 def _claimed(folder: Path, command: str) -> Claim:

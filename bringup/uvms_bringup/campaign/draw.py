@@ -11,6 +11,8 @@ from uvms_core.rng import generator
 STREAM = "campaign.draw."
 """Each path has a random stream of its own: one more draw does not shift the others."""
 
+FAR = 3
+
 
 class Draw(Config):
     """One distribution; exactly one of its words is given."""
@@ -43,6 +45,24 @@ class Draw(Config):
         if self.normal is not None and self.normal[1] <= 0.0:
             raise ValueError("normal: the standard deviation must be > 0")
         return self
+
+    def ends(self) -> list[tuple[str, Any]]:
+        """The values that a scenario must take before any is drawn, with words for them.
+
+        Those of a normal distribution lie `FAR` standard deviations from its mean, beyond which
+        one value in 370 is.
+        """
+        if self.choice is not None:
+            return [(f"choice {number}", one) for number, one in enumerate(self.choice, start=1)]
+        if self.normal is not None:
+            mean, spread = self.normal
+            return [
+                (f"normal, mean {sign} {FAR} standard deviations,", mean + factor * spread)
+                for sign, factor in (("-", -FAR), ("+", FAR))
+            ]
+        name = "loguniform" if self.loguniform is not None else "uniform"
+        low, high = self.loguniform or self.uniform or (0.0, 1.0)
+        return [(f"the least value of {name}", low), (f"the greatest value of {name}", high)]
 
     def value(self, path: str, seed: int) -> Any:
         """The value of this path in the run of this seed, the same on every machine."""

@@ -21,11 +21,13 @@ from uvms_core.yaml_text import parse_yaml, read_yaml
 CAMPAIGN_FILE = "campaign.yaml"
 """The copy of a campaign in its folder of results."""
 
-MOST_RUNS = 1_000_000
+MOST_RUNS = 100_000
+"""A day of one-second runs on one core; each is also an object in memory and a row of the page."""
 NAME = re.compile(r"[A-Za-z0-9_][\w .+=-]*")
 """A name becomes part of a folder's name; the signs / [ ] and , have a meaning in a row's name."""
 
-Seed = Annotated[int, Field(strict=True, ge=0, le=2**63 - 1)]
+LARGEST_SEED = 2**63 - 1
+Seed = Annotated[int, Field(strict=True, ge=0, le=LARGEST_SEED)]
 Settings = dict[str, Any]
 Seeds = (
     Annotated[int, Field(strict=True, ge=1, le=MOST_RUNS)]
@@ -81,6 +83,39 @@ class Case(Config):
         good = all(type(one) is int and one >= least for one in many)
         if given is not None and not (good and many and len(set(many)) == len(many)):
             raise ValueError("write how many seeds (>= 1), or a list of seeds (>= 0), each once")
+        if type(given) is int and given > MOST_RUNS:
+            raise ValueError(f"{given:,} seeds; a campaign has at most {MOST_RUNS:,} runs")
+        if isinstance(given, list | tuple) and max(given) > LARGEST_SEED:
+            raise ValueError(f"a seed is at most {LARGEST_SEED}")
+        return given
+
+    @field_validator("vary", mode="before")
+    @classmethod
+    def _varies(cls, given: Any) -> Any:
+        """One clear message, where pydantic has one for each way to write the values."""
+        for path, values in _mapping(given, "PATH: [VALUE, VALUE]").items():
+            if not isinstance(values, list | tuple | dict) or not values:
+                raise ValueError(
+                    f"{path!r}: write the values to try, as [VALUE, VALUE] or {{NAME: VALUE}}"
+                )
+        return given
+
+    @field_validator("require", mode="before")
+    @classmethod
+    def _requires(cls, given: Any) -> Any:
+        for name, bound in _mapping(given, "FIELD: {max: VALUE}").items():
+            if not isinstance(bound, dict | Bound | None):
+                raise ValueError(
+                    f"{name!r}: write a bound as {{max: {_shown(bound)}}}, with one or more of"
+                    f" {', '.join(Bound.model_fields)}; null lifts the campaign's"
+                )
+        return given
+
+    @field_validator("events", mode="before")
+    @classmethod
+    def _are_events(cls, given: Any) -> Any:
+        if given is not None and not isinstance(given, list | tuple):
+            raise ValueError("write a list of events; [] for none")
         return given
 
     @field_validator("set", "vary", "draw")
@@ -127,6 +162,18 @@ class Campaign(Case):
             if case.scenario is None and self.scenario is None:
                 raise ValueError(f"case {name!r} has no scenario, and the campaign has none either")
         return self
+
+
+def _mapping(given: Any, example: str) -> dict[Any, Any]:
+    """The values by name; ValueError where it is no mapping."""
+    if not isinstance(given, dict):
+        raise ValueError(f"write a mapping, such as {{{example}}}")
+    return given
+
+
+def _shown(value: Any) -> str:
+    """A number as a message repeats it in an example; else a word for it."""
+    return f"{value:g}" if isinstance(value, int | float) else "VALUE"
 
 
 def _named(values: dict[str, Any]) -> dict[str, Any]:

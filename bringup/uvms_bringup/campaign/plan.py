@@ -5,6 +5,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from fnmatch import fnmatchcase
 from itertools import product
+from math import prod
 from typing import Any
 
 from uvms_bringup.campaign.bound import OUTCOME, Bound
@@ -91,6 +92,7 @@ def variants(campaign: Campaign, pattern: str = "*") -> tuple[Variant, ...]:
     Raises:
         CampaignError: no name fits the pattern, or there are too many runs.
     """
+    _check_count(campaign)
     everything = [
         one
         for name, case in (campaign.cases or {ONLY_CASE: Case()}).items()
@@ -100,9 +102,31 @@ def variants(campaign: Campaign, pattern: str = "*") -> tuple[Variant, ...]:
     if not chosen:
         names = ", ".join(one.case for one in everything if not one.beside)
         raise CampaignError(f"--select {pattern!r}: fits none of {names}")
-    if (count := sum(len(one.seeds) for one in chosen)) > MOST_RUNS:
-        raise CampaignError(f"campaign {campaign.campaign}: {count} runs; at most {MOST_RUNS}")
     return chosen
+
+
+def _check_count(campaign: Campaign) -> None:
+    """Raise CampaignError where there are too many runs, before any is made; says what multiplies.
+
+    The whole campaign counts, whatever is selected of it: its names alone would take minutes.
+    """
+    total, most, words = 0, 0, ""
+    for name, case in (campaign.cases or {ONLY_CASE: Case()}).items():
+        factors = {f"{len(values)} of {path}": len(values) for path, values in
+                   _grid(campaign, case).items()}  # fmt: skip
+        seeds = len(_seeds(campaign, case))
+        factors[f"{seeds:,} {'seed' if seeds == 1 else 'seeds'}"] = seeds
+        if baselines := len(_baselines(campaign, case)):
+            factors[f"{1 + baselines} (1 and {baselines} baselines)"] = 1 + baselines
+        count = prod(factors.values())
+        total += count
+        if count > most:
+            most, words = count, f"case {name!r} alone: {count:,} = {' x '.join(factors)}"
+    if total > MOST_RUNS:
+        raise CampaignError(
+            f"campaign {campaign.campaign}: {total:,} runs, and at most {MOST_RUNS:,} are allowed"
+            f" ({words}); vary fewer values, or draw them by seed instead of varying them"
+        )
 
 
 def runs(chosen: tuple[Variant, ...]) -> Iterator[Run]:
@@ -136,15 +160,13 @@ def _fits(one: Variant, pattern: str) -> bool:
 
 
 def _of_case(campaign: Campaign, name: str, case: Case) -> Iterator[Variant]:
-    own = {*case.set, *case.vary, *case.draw}  # what a case says itself goes first
-    grid = {**{k: v for k, v in campaign.vary.items() if k not in own}, **case.vary}
+    own = _own(case)
     draws = {**{k: v for k, v in campaign.draw.items() if k not in own}, **case.draw}
     values = {**campaign.set, **case.set}
     events = case.events if case.events is not None else campaign.events
     if events is not None:
         values["events"] = list(events)
-    seeds = campaign.seeds if case.seeds is None else case.seeds
-    for varied, label in _points(grid):
+    for varied, label in _points(_grid(campaign, case)):
         full = f"{name}{label}"
         for baseline, changes in {"": {}, **_baselines(campaign, case)}.items():
             yield Variant(
@@ -157,8 +179,23 @@ def _of_case(campaign: Campaign, name: str, case: Case) -> Iterator[Variant]:
                 draws=draws,
                 baseline=changes,
                 required=_required(campaign, case),
-                seeds=tuple(range(1, seeds + 1)) if isinstance(seeds, int) else seeds,
+                seeds=_seeds(campaign, case),
             )
+
+
+def _own(case: Case) -> set[str]:
+    """Paths that a case says itself, which goes before the campaign."""
+    return {*case.set, *case.vary, *case.draw}
+
+
+def _grid(campaign: Campaign, case: Case) -> dict[str, Any]:
+    own = _own(case)
+    return {**{k: v for k, v in campaign.vary.items() if k not in own}, **case.vary}
+
+
+def _seeds(campaign: Campaign, case: Case) -> tuple[int, ...]:
+    seeds = campaign.seeds if case.seeds is None else case.seeds
+    return tuple(range(1, seeds + 1)) if isinstance(seeds, int) else seeds
 
 
 def _points(grid: Mapping[str, Any]) -> Iterator[tuple[dict[str, Any], str]]:

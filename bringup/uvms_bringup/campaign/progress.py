@@ -13,11 +13,12 @@ class CampaignProgress:
     Args:
         total: runs to make.
         kept: of these, how many are there already.
+        failed: of those that are there, how many failed.
     """
 
-    def __init__(self, total: int, kept: int) -> None:
+    def __init__(self, total: int, kept: int, failed: int = 0) -> None:
         self._total, self._kept = total, kept
-        self._done, self._failed = kept, 0
+        self._done, self._failed = kept, failed
         self._began = self._shown = time.monotonic()
         self._bar = _bar() if sys.stderr.isatty() else None
 
@@ -36,10 +37,10 @@ class CampaignProgress:
         if self._bar is not None:
             self._bar.stop()
 
-    def add(self, passed: bool) -> None:
+    def add(self, failed: bool) -> None:
         """One more run has ended; one of a baseline does not count as failed."""
         self._done += 1
-        self._failed += not passed
+        self._failed += failed
         if self._bar is not None:
             self._bar.update(self._task, completed=self._done, text=self._text())
         elif time.monotonic() - self._shown >= LINE_S:

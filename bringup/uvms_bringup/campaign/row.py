@@ -15,7 +15,15 @@ RAISED = "error"
 CHOSEN = "set."
 """Prefix of the columns with the values that were varied or drawn."""
 
-TIMINGS = ("wall_s", "real_time_factor", "planner_step_ms.p50", "planner_step_ms.p99")
+OF_MACHINE = "error_of_machine"
+"""Field that only rows have whose run was not made because of the machine; made again on resume."""
+
+MISSING_LOG = "log_missing"
+"""Field that only rows have whose log could not be written: why."""
+
+TIMINGS = (
+    "wall_s", "real_time_factor", "planner_step_ms.p50", "planner_step_ms.p99", MISSING_LOG,
+)  # fmt: skip
 """Fields that depend on the machine; all others are the same wherever a run is made."""
 
 
@@ -25,9 +33,15 @@ def row_of(run: Run, summary: Mapping[str, Any]) -> Row:
     return _row(run, flat, faults(run.required, flat))
 
 
-def row_of_fault(run: Run, reason: str) -> Row:
+def row_of_fault(run: Run, reason: str, of_machine: bool = False) -> Row:
     """The row of a run that raised."""
-    return _row(run, {"outcome": RAISED, "reasons": [reason]}, [reason])
+    mark = {OF_MACHINE: True} if of_machine else {}
+    return _row(run, {"outcome": RAISED, "reasons": [reason], **mark}, [reason])
+
+
+def is_failed(row: Mapping[str, Any]) -> bool:
+    """Whether it counts and did not keep what is required; baselines do not count."""
+    return not row["passed"] and not row["beside"]
 
 
 def without_timings(row: Mapping[str, Any]) -> Row:

@@ -53,11 +53,14 @@ def run(options: Namespace) -> int:
 
     from uvms_bringup.campaign.conduct import Conduct
     from uvms_bringup.campaign.file import load_campaign
+    from uvms_bringup.campaign.results import check_picture
     from uvms_bringup.errors import CampaignError
     from uvms_bringup.folder import new_folder
 
     if options.resume and not options.output:
         raise CampaignError("--resume: say with --output DIR which campaign to go on with")
+    if options.picture:
+        check_picture(options.picture)
     campaign = load_campaign(options.campaign)
     folder = Path(options.output or new_folder(campaign.campaign)).resolve()
     conduct = Conduct(
@@ -66,14 +69,21 @@ def run(options: Namespace) -> int:
         options.resume,
         options.select,
         options.logs,
+        lambda line: print(line, flush=True),
     )
-    print(f"{campaign.campaign}: {campaign.description}\nresults in {folder}", flush=True)
+    print(f"{campaign.campaign}: {campaign.description}".rstrip(": "), flush=True)
     results, stopped = conduct.run(campaign, folder, options.command_line)
     print(text(results))
     if options.picture and results.rows:
         results.draw(options.picture)
+    for note in results.notes():
+        print(f"note: {note}", file=sys.stderr)
     if stopped is not None:
-        print(f"{stopped}; go on with --resume --output {folder}", file=sys.stderr)
+        made, planned = len(results.rows), sum(len(one.seeds) for one in results.variants)
+        print(
+            f"{stopped}: {made} of {planned} made; go on with --resume --output {folder}",
+            file=sys.stderr,
+        )
         return stopped.exit_code
     return 0 if results.passed == len(results.judged) else 1
 
@@ -95,7 +105,14 @@ def text(results: "Results") -> str:
             f"{name:{width}}  {case['passed']:4d} of {case['runs']} passed"
             f"  ({100 * low:.0f}-{100 * high:.0f} %){beside}"
         )
-    lines.append(f"{results.passed} of {len(results.judged)} runs kept all that is required")
+    made = len(results.judged)
+    if made < results.planned:
+        lines.append(
+            f"{made} of {results.planned} runs are made; {results.passed} of these kept all that is"
+            " required"
+        )
+    else:
+        lines.append(f"{results.passed} of {made} runs kept all that is required")
     if results.rows:
         lines.append(f"page: {results.folder / PAGE_FILE}")
     return "\n".join(lines)

@@ -50,6 +50,9 @@ def _follows_from_others(item, groups: set[tuple]) -> bool:
 def _explain_one(item, what: str, model: type[BaseModel]) -> str:
     path = ".".join(str(part) for part in item["loc"] if not _is_tag(part)) or "(top)"
     line = f"{what}: {path}: {item['msg'].removeprefix('Value error, ')}"
+    if item["type"] == "model_type":
+        names = ", ".join(_names_at(model, item["loc"]))
+        line = f"{what}: {path}: write a group of values, {{NAME: VALUE}}, with names of {names}"
     if item["type"] == "extra_forbidden":
         return f"{line}; known names here: {', '.join(_names_at(model, item['loc'][:-1]))}"
     if item["type"] == "missing":

@@ -18,12 +18,16 @@ def add_arguments(parser: ArgumentParser) -> None:
 
 def run(options: Namespace) -> int:
     """Print the fields that differ, and where the page with the figures is."""
+    from shutil import get_terminal_size
+
     from uvms_analysis.compare import compare
     from uvms_analysis.compare.table import as_text
     from uvms_analysis.errors import determine
 
     found = determine(lambda: compare(options.runs, options.output))
-    print(as_text(found.names, found.rows))
+    for warning in found.warnings:
+        print(f"warning: {warning}")
+    print(as_text(found.names, found.rows, get_terminal_size().columns))
     print(f"page: {found.page}")
     return 0
 

@@ -16,12 +16,15 @@ from uvms_analysis.report.page import CSS
 PAGE = "compare.html"
 
 
-def write(folder: Path, runs: Mapping[str, Analysis], rows: Sequence[Row]) -> Path:
+def write(
+    folder: Path, runs: Mapping[str, Analysis], rows: Sequence[Row], warnings: Sequence[str] = ()
+) -> Path:
     """Draw the figures and write the page; returns it."""
     names = list(runs)
     title = "Comparison of " + ", ".join(names)
     body = [
         f"<h1>{html.escape(title)}</h1>",
+        *(f'<p class="banner bad">{html.escape(text)}</p>' for text in warnings),
         *(_figure(folder, name, runs) for name in FIGURES),
         "<h2>Fields that differ</h2>",
         _table(names, rows),

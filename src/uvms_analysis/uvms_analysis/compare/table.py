@@ -15,8 +15,18 @@ UNITS = (
 )
 """Ends of names and their units; the first that fits counts."""
 
+VEHICLE, SCENARIO = "vehicle", "scenario"
+"""Fields that are shown even where they are the same in all runs: what is compared."""
+
+OF_SOME_RUNS = ("node_counters.",)
+"""Groups that have other fields in each kind of run; those that a run has not got say nothing."""
+
 LEFT_OUT = ("run_id", "start_up_s", "check.", "missing.")
 """Fields, or groups of them, that differ between any two runs or say nothing about the motion."""
+
+GAP = 2
+LEAST = 10
+"""Spaces between columns, and the least width of a column with values."""
 
 
 @dataclass(frozen=True)
@@ -61,23 +71,46 @@ def unit(name: str) -> str:
 
 
 def differences(summaries: Sequence[Mapping[str, Any]]) -> Iterator[Row]:
-    """The fields that are not the same in all summaries, in the order of the first."""
+    """What is compared, and the fields that differ, in the order of the first summary."""
     names = dict.fromkeys(name for one in summaries for name in one)
     for name in names:
         values = tuple(one.get(name) for one in summaries)
-        if not name.startswith(LEFT_OUT) and any(value != values[0] for value in values):
+        if name in (VEHICLE, SCENARIO):
+            yield Row(name, "", values)
+        elif not _is_left_out(name, summaries) and any(value != values[0] for value in values):
             yield Row(name, unit(name), values)
 
 
-def as_text(names: Sequence[str], rows: Sequence[Row]) -> str:
-    """The table for a terminal."""
+def _is_left_out(name: str, summaries: Sequence[Mapping[str, Any]]) -> bool:
+    is_in_all = all(name in one for one in summaries)
+    return name.startswith(LEFT_OUT) or (name.startswith(OF_SOME_RUNS) and not is_in_all)
+
+
+def as_text(names: Sequence[str], rows: Sequence[Row], width: int = 100) -> str:
+    """The table for a terminal of that many columns; long cells end on `…`."""
     head = ("field", "unit", *names)
     lines = [head, *((row.name, row.unit, *row.texts) for row in rows)]
-    widths = [min(max(len(line[k]) for line in lines), 60) for k in range(len(head))]
+    widths = [max(len(line[k]) for line in lines) for k in range(len(head))]
+    room = width - sum(widths[:2]) - GAP * (len(widths) - 1)
+    widths[2:] = _shared(widths[2:], room)
     return "\n".join(
-        "  ".join(
-            cell[:width].ljust(width) if k < 2 else cell[:width].rjust(width)
-            for k, (cell, width) in enumerate(zip(line, widths, strict=True))
-        ).rstrip()
+        (" " * GAP)
+        .join(
+            _cut(cell, own).ljust(own) if k < 2 else _cut(cell, own).rjust(own)
+            for k, (cell, own) in enumerate(zip(line, widths, strict=True))
+        )
+        .rstrip()
         for line in lines
     )
+
+
+def _shared(wanted: Sequence[int], room: int) -> list[int]:
+    """Widths of columns that together fit; the widest give way."""
+    limit = max(wanted, default=0)
+    while limit > LEAST and sum(min(one, limit) for one in wanted) > room:
+        limit -= 1
+    return [min(one, limit) for one in wanted]
+
+
+def _cut(cell: str, width: int) -> str:
+    return cell if len(cell) <= width else f"{cell[: width - 1]}…"

@@ -59,7 +59,9 @@ def _checked(event: Any) -> Any:
     if len(words) != 1:
         has = f"has {' and '.join(words)}" if words else f"has {', '.join(map(str, event))}"
         raise ValueError(f"an event has exactly one of {', '.join(_WORDS)}; this one {has}")
-    if words == [SENSOR] and event.get("fault") not in FAULTS:
+    if words == [SENSOR] and "fault" not in event:
+        raise ValueError(f"fault: required; choose one of {', '.join(FAULTS)}")
+    if words == [SENSOR] and event["fault"] not in FAULTS:
         raise ValueError(f"fault {event.get('fault')!r}: choose one of {', '.join(FAULTS)}")
     return event
 
