@@ -107,4 +107,4 @@ def test_own_log_is_summarised_and_lacks_what_was_not_written(output):
     assert start == 10.0
     assert 12.0 < end < 15.0  # of a vehicle 8.5 kg too heavy, after 10 s
     assert all(value > 0.0 for line in lines[2:5] for value in numbers(line))
-    assert lines[5] == "navigation_error_m: {'rms': None, 'max': None}"
+    assert lines[5] == "navigation_error_m: {'rms': None, 'max': None, 'end': None}"
