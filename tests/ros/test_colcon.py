@@ -8,6 +8,8 @@ from pathlib import Path
 
 import pytest
 
+from uvms_core.vehicle.locate import known_vehicles
+
 ROOT = Path(__file__).resolve().parents[2]
 BIN = Path(sys.prefix) / "bin"
 ALL = [*sorted(file.parent for file in (ROOT / "src").glob("*/package.xml")), ROOT / "bringup"]
@@ -118,9 +120,11 @@ def test_configuration_is_shared(workspace):
     shared = workspace / "share/uvms_bringup/config/scenarios"
     scenarios = {file.name for file in (ROOT / "bringup/config/scenarios").glob("*.yaml")}
     assert {file.name for file in shared.iterdir()} == scenarios
+    campaigns = {file.name for file in (ROOT / "bringup/config/campaigns").glob("*.yaml")}
+    assert {file.name for file in (shared.parent / "campaigns").iterdir()} == campaigns
     assert (workspace / "share/uvms_bringup/launch/uvms.launch.py").is_file()
     command = "python -c 'from uvms_core.vehicle import locate; print(*locate.known_vehicles())'"
-    assert in_workspace(workspace, command).split() == ["bluerov2_alpha5", "reference_auv"]
+    assert in_workspace(workspace, command).split() == list(known_vehicles())
 
 
 def test_colcon_test_runs_the_tests_of_a_package(workspace):
