@@ -121,7 +121,7 @@ def test_configuration_is_shared(workspace):
     scenarios = {file.name for file in (ROOT / "bringup/config/scenarios").glob("*.yaml")}
     assert {file.name for file in shared.iterdir()} == scenarios
     campaigns = {file.name for file in (ROOT / "bringup/config/campaigns").glob("*.yaml")}
-    assert {file.name for file in (shared.parent / "campaigns").iterdir()} == campaigns
+    assert {file.name for file in (shared.parent / "campaigns").glob("*.yaml")} == campaigns
     assert (workspace / "share/uvms_bringup/launch/uvms.launch.py").is_file()
     command = "python -c 'from uvms_core.vehicle import locate; print(*locate.known_vehicles())'"
     assert in_workspace(workspace, command).split() == list(known_vehicles())
