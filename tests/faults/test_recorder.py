@@ -36,7 +36,7 @@ def test_the_plant_waits_for_a_recorder_that_lags_behind(tmp_path, saw):
     assert counted["/sensors/imu"] == 3001
     assert counted["/tf"] == counted["/clock"] == counted["/allocation"] == 601
     assert run.end.lost == {}
-    assert run.end.sent.items() <= counted.items()
+    assert {topic: n for topic, n in run.end.sent.items() if n}.items() <= counted.items()
     saw("recorder halted in lockstep", "the plant waits; 3,001 of 3,001 IMU messages, none lost")
 
 

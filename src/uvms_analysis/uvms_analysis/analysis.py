@@ -159,9 +159,12 @@ class Analysis:
 
     @cached_property
     def path_start_s(self) -> float:
-        """When the path begins: as the planner reports, else where its references fit it best."""
+        """When the path begins: as the planner reports, else where its references fit it best.
+
+        A step that plans ahead of the path reports 0 s, which says nothing of when it begins.
+        """
         for status in self.log.statuses(topics.MOTION_PLANNER):
-            if np.isfinite(elapsed := status.number(ELAPSED)):
+            if (elapsed := status.number(ELAPSED)) > 0.0:
                 return round(to_seconds(status.stamp) - elapsed, 9)
         return self._fitted_start()
 

@@ -30,6 +30,7 @@ LOADED = (
     topics.REFERENCE,
     topics.ALLOCATION,
     topics.APPLIED_THRUST,
+    topics.SENSOR_GAPS,
     topics.DIAGNOSTICS,
 )
 
