@@ -15,10 +15,10 @@ from datetime import date
 from pathlib import Path
 from typing import Any
 
-from uvms_bringup.campaign.conduct import Conduct
 from uvms_bringup.campaign.field_page import lines_of, table, write_page
 from uvms_bringup.campaign.file import load_campaign
 from uvms_bringup.campaign.results import SUMMARY_FILE
+from uvms_bringup.campaign.runner import CampaignRunner
 from uvms_bringup.errors import CampaignError
 from uvms_bringup.folder import new_folder
 from uvms_bringup.session import git_revision
@@ -68,13 +68,13 @@ def _run(options: Namespace) -> dict[str, Any] | None:
     if options.select != "*":
         options.page = ""  # half a table would look like a whole one
     print(f"{campaign.campaign}: {campaign.description}".rstrip(": "), flush=True)
-    conduct = Conduct(
+    runner = CampaignRunner(
         options.workers,
         resume=options.resume,
         select=options.select,
         say=lambda line: print(line, flush=True),
     )
-    results, stopped = conduct.run(campaign, folder, "make field")
+    results, stopped = runner.run(campaign, folder, "make field")
     if stopped is not None:
         print(
             f'{stopped}; go on with make field ARGS="--resume --output {folder}"', file=sys.stderr

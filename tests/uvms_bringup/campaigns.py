@@ -6,10 +6,10 @@ import subprocess
 import sys
 from pathlib import Path
 
-from uvms_bringup.campaign.conduct import Conduct
 from uvms_bringup.campaign.file import load_campaign
 from uvms_bringup.campaign.plan import runs, variants
 from uvms_bringup.campaign.row import without_timings
+from uvms_bringup.campaign.runner import CampaignRunner
 from uvms_bringup.campaign.table import TABLE_FILE, read_table, write_table
 from uvms_bringup.campaign.worker import make_row
 
@@ -48,7 +48,7 @@ def alone(file, folder):
 
 def conducted(file, folder, **options):
     """The table of a campaign that is run as its command runs it."""
-    results, stopped = Conduct(**options).run(load_campaign(str(file)), folder, "test")
+    results, stopped = CampaignRunner(**options).run(load_campaign(str(file)), folder, "test")
     assert stopped is None
     return results, table(folder)
 

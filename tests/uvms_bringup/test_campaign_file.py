@@ -30,7 +30,7 @@ def test_cases_expand_to_grid_baselines_and_seeds_in_the_order_of_the_file(tmp_p
         ("current[plant.current_ned_m_s=slow]", 7),
         ("current[plant.current_ned_m_s=slow]", 4),
     ]
-    assert [run.beside for run in made] == [""] * 3 + ["still"] * 3 + [""] * 2
+    assert [run.baseline_of for run in made] == [""] * 3 + ["still"] * 3 + [""] * 2
 
 
 def test_every_combination_of_a_grid_is_run(tmp_path):

@@ -21,12 +21,14 @@ REQUIRED = {
 }
 
 
-def made(*values, outcome="completed", beside=""):
+def made(*values, outcome="completed", baseline_of=""):
     rows: list[Row] = []
     for seed, (roll, off) in enumerate(values, 1):
         own = {"outcome": outcome, "roll_deg.max": roll, "vehicle_error_m.max": off}
         failed = [text for name, one in REQUIRED.items() if (text := one.fault(name, own[name]))]
-        rows.append({"case": "gust", "seed": seed, "beside": beside, "passed": not failed, **own})
+        rows.append(
+            {"case": "gust", "seed": seed, "baseline_of": baseline_of, "passed": not failed, **own}
+        )
     return case_statistics(REQUIRED, rows) | {"planned": len(rows), "baselines": {}}
 
 
@@ -97,7 +99,7 @@ def test_the_page_is_written_from_results_that_are_there(tmp_path, capsys):
 def test_the_field_has_its_cases_each_with_a_requirement_and_fits_its_time():
     campaign = load_campaign("trial_field")
     chosen = variants(campaign)
-    cases = [one for one in chosen if not one.beside]
+    cases = [one for one in chosen if not one.baseline_of]
     assert len(cases) >= 40
     assert all(len(one.required) > 1 for one in cases)
     seconds = sum(one.values["duration_s"] * len(one.seeds) for one in chosen)

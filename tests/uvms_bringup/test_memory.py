@@ -13,6 +13,8 @@ from uvms_core.errors import UvmsError
 DIFFERENT = "plant.mismatch={mass: 0.2, damping: 0.2, buoyancy_centre_m: 0.001}"
 PUSH = "events=[{at_s: 1, until_s: 2, wrench: {force_n: [5, 0, 0], moment_nm: [0, 0, 0]}}]"
 
+SILENT = "events=[{at_s: 1, until_s: 2, sensor: dvl, fault: silent}]"
+
 
 def flat(summary):
     groups = {name.split(".")[0] for name in TIMINGS} | {"run_id", "start_up_s"}
@@ -28,6 +30,7 @@ def flat(summary):
         ("arm_swing", ["control.enabled=false", "vehicle.hull.cg_m.2=0.0101"], 3.0, "completed"),
         ("arm_swing", ["vehicle=bluerov2_alpha5"], 2.0, "completed"),
         ("hover", [DIFFERENT, PUSH], 2.0, "completed"),
+        ("hover", [SILENT], 3.0, "completed"),
     ],
 )
 def test_the_summary_from_memory_is_that_of_the_log(tmp_path, name, settings, duration, outcome):

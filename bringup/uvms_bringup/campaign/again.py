@@ -5,10 +5,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from uvms_bringup.campaign.conduct import copied_campaign
 from uvms_bringup.campaign.journal import Journal
 from uvms_bringup.campaign.plan import Run, find_run
 from uvms_bringup.campaign.row import Row, row_of, without_timings
+from uvms_bringup.campaign.runner import copied_campaign
 from uvms_bringup.campaign.worker import session
 from uvms_bringup.session import Session
 

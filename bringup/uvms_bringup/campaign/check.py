@@ -51,7 +51,7 @@ def check_variants(campaign: str, chosen: Iterable[Variant]) -> dict[str, str]:
         for name, bound in one.required.items():
             if why := requirement_fault(name, bound, fields):
                 raise CampaignError(f"{what}: require: {why}")
-        if one.draws and not one.beside and (key := _key(one)) not in drawn:
+        if one.draws and not one.baseline_of and (key := _key(one)) not in drawn:
             drawn.add(key)
             _check_draws(what, one.draws, run)
         progress.show(len(digests))

@@ -149,7 +149,7 @@ def _figures(fields: Sequence[str], cases: Mapping[str, Any], rows: list[Row]) -
 
 
 def _failures(folder: Path, rows: Sequence[Row]) -> str:
-    failed = [row for row in rows if not row["passed"] and not row["beside"]]
+    failed = [row for row in rows if not row["passed"] and not row["baseline_of"]]
     if not failed:
         return "<p>None.</p>"
     items = (

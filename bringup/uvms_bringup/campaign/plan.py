@@ -24,7 +24,7 @@ class Run:
 
     Args:
         case: name of its row: the case, `[PATH=VALUE]` where something is varied, `/BASELINE`.
-        beside: name of the row that a baseline stands beside; "" where it is none itself.
+        baseline_of: name of the case whose baseline it is; "" where it is none.
         scenario, vehicle: name or file; None: the scenario's own vehicle.
         values: settings by path, in the order in which they are applied.
         chosen: of these, what was varied or drawn.
@@ -32,7 +32,7 @@ class Run:
     """
 
     case: str
-    beside: str
+    baseline_of: str
     seed: int
     scenario: str
     vehicle: str | None
@@ -58,10 +58,10 @@ class Run:
 
 @dataclass(frozen=True)
 class Variant:
-    """A case at one point of its grid, beside the settings of one baseline or of none."""
+    """A case at one point of its grid, with the settings of one baseline or of none."""
 
     case: str
-    beside: str
+    baseline_of: str
     scenario: str
     vehicle: str | None
     values: Mapping[str, Any]
@@ -77,7 +77,7 @@ class Variant:
         chosen = {**self.varied, **drawn}
         values = {**self.values, **chosen, **self.baseline}
         return Run(
-            self.case, self.beside, seed, self.scenario, self.vehicle, values, chosen,
+            self.case, self.baseline_of, seed, self.scenario, self.vehicle, values, chosen,
             self.required,
         )  # fmt: skip
 
@@ -87,7 +87,7 @@ def variants(campaign: Campaign, pattern: str = "*") -> tuple[Variant, ...]:
 
     Args:
         pattern: shell pattern (`*`, `?`) of the names that are wanted; those of baselines are
-            taken with the case that they stand beside.
+            taken with the case whose baselines they are.
 
     Raises:
         CampaignError: no name fits the pattern, or there are too many runs.
@@ -100,7 +100,7 @@ def variants(campaign: Campaign, pattern: str = "*") -> tuple[Variant, ...]:
     ]
     chosen = tuple(one for one in everything if _fits(one, pattern))
     if not chosen:
-        names = ", ".join(one.case for one in everything if not one.beside)
+        names = ", ".join(one.case for one in everything if not one.baseline_of)
         raise CampaignError(f"--select {pattern!r}: fits none of {names}")
     return chosen
 
@@ -156,7 +156,7 @@ def find_run(campaign: Campaign, case: str, seed: int) -> Run:
 def _fits(one: Variant, pattern: str) -> bool:
     # `[` has a meaning in shell patterns, and stands in the names of varied cases.
     literal = pattern.replace("[", "[[]")
-    return any(fnmatchcase(name, literal) for name in (one.case, one.beside) if name)
+    return any(fnmatchcase(name, literal) for name in (one.case, one.baseline_of) if name)
 
 
 def _of_case(campaign: Campaign, name: str, case: Case) -> Iterator[Variant]:
@@ -171,7 +171,7 @@ def _of_case(campaign: Campaign, name: str, case: Case) -> Iterator[Variant]:
         for baseline, changes in {"": {}, **_baselines(campaign, case)}.items():
             yield Variant(
                 case=f"{full}/{baseline}" if baseline else full,
-                beside=full if baseline else "",
+                baseline_of=full if baseline else "",
                 scenario=case.scenario or campaign.scenario or "",
                 vehicle=case.vehicle or campaign.vehicle,
                 values=values,

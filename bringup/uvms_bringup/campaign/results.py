@@ -41,7 +41,7 @@ class Results:
     @property
     def judged(self) -> list[Row]:
         """The rows that count: those of the cases, not of baselines."""
-        return [row for row in self.rows if not row["beside"]]
+        return [row for row in self.rows if not row["baseline_of"]]
 
     @property
     def passed(self) -> int:
@@ -51,7 +51,7 @@ class Results:
     @property
     def planned(self) -> int:
         """Rows that will count when all runs are made."""
-        return sum(len(one.seeds) for one in self.variants if not one.beside)
+        return sum(len(one.seeds) for one in self.variants if not one.baseline_of)
 
     def notes(self) -> list[str]:
         """What the machine did not do: runs that it could not make, and logs not written."""
@@ -76,7 +76,7 @@ class Results:
     def summary(self) -> dict[str, Any]:
         """The content of `summary.json`."""
         started = {row["case"] for row in self.rows}
-        shown = [one for one in self.variants if started & {one.case, one.beside}]
+        shown = [one for one in self.variants if started & {one.case, one.baseline_of}]
         return {
             "campaign": self.campaign.campaign,
             "description": self.campaign.description,
@@ -170,5 +170,5 @@ def write_text(path: Path, text: str) -> None:
 
 def _with_their_cases(everything: Sequence[Variant], shown: Sequence[Variant]) -> list[Variant]:
     """Those to show, and the case of each baseline even where only the baseline has rows yet."""
-    names = {one.case for one in shown} | {one.beside for one in shown}
+    names = {one.case for one in shown} | {one.baseline_of for one in shown}
     return [one for one in everything if one.case in names]

@@ -41,7 +41,7 @@ def row_of_fault(run: Run, reason: str, of_machine: bool = False) -> Row:
 
 def is_failed(row: Mapping[str, Any]) -> bool:
     """Whether it counts and did not keep what is required; baselines do not count."""
-    return not row["passed"] and not row["beside"]
+    return not row["passed"] and not row["baseline_of"]
 
 
 def without_timings(row: Mapping[str, Any]) -> Row:
@@ -56,7 +56,7 @@ def _row(run: Run, flat: Mapping[str, Any], failed: list[str]) -> Row:
     return {
         "case": run.case,
         "seed": run.seed,
-        "beside": run.beside,
+        "baseline_of": run.baseline_of,
         "passed": not failed,
         "failed": failed,
         **{f"{CHOSEN}{path}": value for path, value in run.chosen.items()},

@@ -84,8 +84,10 @@ def statistics(chosen: Sequence[Variant], rows: Sequence[Row]) -> dict[str, Any]
     cases: dict[str, Any] = {}
     for one in chosen:
         found = case_statistics(one.required, by_case.get(one.case, []))
-        if one.beside:
-            cases[one.beside]["baselines"][one.case.removeprefix(f"{one.beside}/")] = found
+        if one.baseline_of:
+            cases[one.baseline_of]["baselines"][one.case.removeprefix(f"{one.baseline_of}/")] = (
+                found
+            )
         else:
             cases[one.case] = found | {"planned": len(one.seeds), "baselines": {}}
     return cases

@@ -30,7 +30,7 @@ def make_row(run: Run, folder: Path, logs: Logs) -> Row:
         if logs == "all":
             return _logged_row(run, folder)
         row = row_of(run, summary_of(run.load()))
-        if logs == "failed" and not row["passed"] and not run.beside:
+        if logs == "failed" and not row["passed"] and not run.baseline_of:
             row |= _with_log(run, folder)[1]
         return row
     except UvmsError as fault:

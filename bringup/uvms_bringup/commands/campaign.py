@@ -51,9 +51,9 @@ def run(options: Namespace) -> int:
     """Run the campaign; 0: all runs kept what is required, 1: some did not."""
     from pathlib import Path
 
-    from uvms_bringup.campaign.conduct import Conduct
     from uvms_bringup.campaign.file import load_campaign
     from uvms_bringup.campaign.results import check_picture
+    from uvms_bringup.campaign.runner import CampaignRunner
     from uvms_bringup.errors import CampaignError
     from uvms_bringup.folder import new_folder
 
@@ -63,7 +63,7 @@ def run(options: Namespace) -> int:
         check_picture(options.picture)
     campaign = load_campaign(options.campaign)
     folder = Path(options.output or new_folder(campaign.campaign)).resolve()
-    conduct = Conduct(
+    runner = CampaignRunner(
         options.workers or _cores(),
         options.scheduler,
         options.resume,
@@ -72,7 +72,7 @@ def run(options: Namespace) -> int:
         lambda line: print(line, flush=True),
     )
     print(f"{campaign.campaign}: {campaign.description}".rstrip(": "), flush=True)
-    results, stopped = conduct.run(campaign, folder, options.command_line)
+    results, stopped = runner.run(campaign, folder, options.command_line)
     print(text(results))
     if options.picture and results.rows:
         results.draw(options.picture)

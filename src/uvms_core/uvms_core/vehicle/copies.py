@@ -40,7 +40,7 @@ def is_copy(data: Any) -> bool:
     return isinstance(data, dict) and SECTION in data
 
 
-def beside(data: Any, folder: Path) -> Any:
+def with_path_from(data: Any, folder: Path) -> Any:
     """The data, with the file that it is a copy of found from the folder of its own file."""
     if not is_copy(data) or not isinstance(data[SECTION], dict):
         return data

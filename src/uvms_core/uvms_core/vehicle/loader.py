@@ -7,7 +7,7 @@ from typing import Any
 
 from uvms_core.config import validated
 from uvms_core.errors import VehicleFileError
-from uvms_core.vehicle.copies import beside, copied
+from uvms_core.vehicle.copies import copied, with_path_from
 from uvms_core.vehicle.derived import MissingShapeError, with_derived_values
 from uvms_core.vehicle.locate import REFERENCE, vehicle_path
 from uvms_core.vehicle.overrides import override
@@ -34,7 +34,7 @@ def load_vehicle(
 
 
 def _read(path: Path) -> Any:
-    return beside(read_yaml(path, str(path), VehicleFileError), path.parent)
+    return with_path_from(read_yaml(path, str(path), VehicleFileError), path.parent)
 
 
 @dataclass(frozen=True)

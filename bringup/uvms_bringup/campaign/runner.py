@@ -31,7 +31,7 @@ def _silent(line: str) -> None:
 
 
 @dataclass(frozen=True)
-class Conduct:
+class CampaignRunner:
     """How a campaign is run.
 
     Args:
