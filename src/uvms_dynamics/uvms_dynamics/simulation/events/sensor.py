@@ -3,6 +3,7 @@
 A fault begins and ends with the stamps of the samples, and so between control ticks too.
 """
 
+from abc import abstractmethod
 from collections.abc import Sequence
 from typing import Annotated, Any, Literal
 
@@ -127,9 +128,9 @@ class _OfSize(_OfQuantities):
     )
 
     @property
+    @abstractmethod
     def size(self) -> tuple[float, ...]:
         """Of the error."""
-        raise NotImplementedError
 
     def check(self, vehicle: Vehicle) -> None:
         """A quantity, and as many numbers as it has."""
