@@ -12,6 +12,10 @@ from std_srvs.srv import Trigger
 
 from uvms_analysis.log.compare import compare
 from uvms_analysis.log.read import RunLog
+from uvms_bringup.cast import Cast
+from uvms_bringup.errors import ScenarioError
+from uvms_bringup.ros.run import check_own_plant
+from uvms_bringup.scenario import load_scenario
 from uvms_core import registry, topics
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.node import qos_profile
@@ -176,3 +180,19 @@ def test_events_and_reset_by_service(graph):
     )
     assert abs(applied.thrust[1] - 12.0) > 1.0  # the thruster is whole again
     assert not applied.thruster_safe
+
+
+@pytest.mark.parametrize(
+    ("setting", "name"),
+    [
+        ("events=[{at_s: 1.0, thruster: main, effectiveness: 0.0}]", "events"),
+        ("plant.mismatch.mass=0.1", "plant.mismatch"),
+        ("plant.vehicle_overrides={hull.cb_m: [0.0, 0.001, 0.0]}", "plant.vehicle_overrides"),
+    ],
+)
+def test_a_plant_of_somebody_else_s_does_not_ignore_what_the_log_would_claim(setting, name):
+    scenario = load_scenario("hover", [setting])
+    with pytest.raises(ScenarioError, match=rf"^{name}: --node plant=rclpy.node:Node takes no"):
+        check_own_plant(Cast.parse(["plant=rclpy.node:Node"]), scenario)
+    check_own_plant(Cast.parse(["plant=uvms_dynamics.nodes.plant:PlantNode"]), scenario)
+    check_own_plant(Cast(), scenario)

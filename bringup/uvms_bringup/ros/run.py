@@ -11,7 +11,7 @@ from rclpy.node import Node
 from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Holder
 from uvms_bringup.ending import Ending
-from uvms_bringup.errors import RunError
+from uvms_bringup.errors import RunError, ScenarioError
 from uvms_bringup.pace import Pace
 from uvms_bringup.ros.acknowledge import window_for
 from uvms_bringup.ros.conductor import Conductor
@@ -28,6 +28,8 @@ from uvms_core.ros.node import UvmsNode
 from uvms_core.ros.spin import Spinner, start
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.simulation import PlantConfig
+from uvms_dynamics.simulation.events import EventsConfig
 
 Progress = Callable[[int, str], None]
 QUIET_S = 0.3
@@ -75,9 +77,11 @@ class GraphRun:
             RunError: a node died or did not come up, the planner rejected the goal, or somebody
                 else is in the graph.
             PluginError: a node cannot be imported.
+            ScenarioError: it asks of a plant that is not ours what only ours does.
             Stopped: by a signal.
         """
         foreign = foreign_roles(self.cast)
+        check_own_plant(self.cast, self.scenario)
         values = environment(self.folder / "logs")
         claim = claim_domain(values, self.holder)
         try:
@@ -215,6 +219,30 @@ def foreign_roles(cast: Cast) -> frozenset[str]:
         if not (isinstance(make, type) and issubclass(make, Node)):
             raise RunError(f"--node {role}={cast.nodes[role]}: is no subclass of rclpy.node.Node")
     return cast.absent | {r for r, make in chosen.items() if not issubclass(make, UvmsNode)}
+
+
+def check_own_plant(cast: Cast, scenario: Scenario) -> None:
+    """Refuse what a plant that the user brings would ignore, and the log would claim.
+
+    Raises:
+        ScenarioError: the scenario has events, or a plant that differs from the model, and the
+            node does not have the parameters for them.
+    """
+    if topics.PLANT not in cast.nodes:
+        return
+    make = registry.load(registry.NODES, cast.nodes[topics.PLANT])
+    taken, plant = getattr(make, "configurations", ()), scenario.plant
+    for name, config, value in (
+        ("events", EventsConfig, scenario.events),
+        ("plant.vehicle_overrides", PlantConfig, plant.vehicle_overrides),
+        ("plant.mismatch", PlantConfig, any(half for _, half in plant.mismatch)),
+    ):
+        if value and config not in taken:
+            raise ScenarioError(
+                f"{name}: --node {topics.PLANT}={cast.nodes[topics.PLANT]} takes no"
+                f" {config.__name__}, and would ignore it; leave it out, or list {config.__name__}"
+                " in the node's `configurations`"
+            )
 
 
 def _print_contracts(cast: Cast, vehicle: Vehicle) -> None:
