@@ -104,10 +104,10 @@ def make_parts(scenario: Scenario, vehicle: Vehicle) -> dict[str, Part]:
     period = to_nanoseconds(scenario.plant.control_period_s)
     return {
         topics.NAVIGATION: navigation_part(vehicle, scenario.navigation, period),
-        topics.MOTION_PLANNER: PlannerPart(vehicle, scenario.planner, scenario.seed),
+        topics.MOTION_PLANNER: PlannerPart(vehicle, scenario.planner, scenario.seed, period),
         topics.DISTURBANCE_OBSERVER: ObserverPart(vehicle, scenario.observer, period),
-        topics.CONTROLLER: ControllerPart(vehicle, scenario.control),
-        topics.THRUST_ALLOCATOR: AllocatorPart(vehicle, scenario.allocation),
+        topics.CONTROLLER: ControllerPart(vehicle, scenario.control, period),
+        topics.THRUST_ALLOCATOR: AllocatorPart(vehicle, scenario.allocation, period),
     }
 
 

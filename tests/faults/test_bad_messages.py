@@ -7,6 +7,7 @@ from wire import NODES, wire
 
 from uvms_core import topics
 from uvms_core.cdr import CdrError, codec
+from uvms_core.signals import BY_THRUSTER
 from uvms_core.vehicle import load_vehicle
 
 VEHICLE = load_vehicle()
@@ -21,7 +22,7 @@ RECOVERY_S = 2.0
 
 
 def names_of(topic):
-    by_thruster = topic in (topics.THRUSTER_COMMAND, topics.ALLOCATION, topics.APPLIED_THRUST)
+    by_thruster = topic.signal in BY_THRUSTER
     return VEHICLE.thruster_names if by_thruster else VEHICLE.joint_names
 
 

@@ -30,6 +30,9 @@ def assert_equal(one, two):
     assert type(one) is type(two)
     for field in fields(one):
         a, b = getattr(one, field.name), getattr(two, field.name)
+        if is_dataclass(a):
+            assert_equal(a, b)
+            continue
         np.testing.assert_array_equal(a, b, err_msg=field.name)
         assert np.shape(a) == np.shape(b)
 

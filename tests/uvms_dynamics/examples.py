@@ -56,11 +56,20 @@ def example(kind: type, rng: np.random.Generator) -> Any:
         signals.JointStates: lambda: signals.JointStates(t, n(4), n(4), n(4)),
         signals.Odometry: lambda: signals.Odometry(t, n(3), unit(rng), n(6), n(6, 6), n(6, 6)),
         signals.Wrench: lambda: signals.Wrench(t, n(6)),
-        signals.DisturbanceBudget: lambda: signals.DisturbanceBudget(t, n(6), n(6), n(6)),
+        signals.DisturbanceBudget: lambda: signals.DisturbanceBudget(
+            t,
+            n(6),
+            n(6),
+            n(6),
+            n(6),
+            signals.Payload(True, 1.5, 0.1, float(n(1)[0]), 0.2, n(3), n(3)),
+            signals.ThrusterHealth(n(7), n(7)),
+        ),
+        signals.Stability: lambda: signals.Stability(t, *n(4).tolist()),
         signals.Reference: lambda: reference(rng),
         signals.JointCommand: lambda: signals.JointCommand(t, n(4)),
         signals.ThrusterCommand: lambda: signals.ThrusterCommand(t, n(7)),
-        signals.Allocation: lambda: signals.Allocation(t, n(7), n(6), n(6), n(7) > 0.0),
+        signals.Allocation: lambda: signals.Allocation(t, n(7), n(6), n(6), n(7) > 0.0, n(7)),
         signals.AppliedThrust: lambda: signals.AppliedThrust(
             t, n(7), n(7), stamp(rng), stamp(rng), True, False
         ),
@@ -74,8 +83,8 @@ def example(kind: type, rng: np.random.Generator) -> Any:
 
 def names_of(topic: Topic | Action) -> tuple[str, ...]:
     """Names that the topic's values come under."""
-    by_thruster = (topics.THRUSTER_COMMAND, topics.ALLOCATION, topics.APPLIED_THRUST)
-    return THRUSTERS if topic in by_thruster else JOINTS
+    kind = topic.signal if isinstance(topic, Topic) else None
+    return THRUSTERS if kind in signals.BY_THRUSTER else JOINTS
 
 
 def carrying() -> list[Topic]:

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_control.config import ArmControlConfig
+from uvms_control.arm_config import ArmControlConfig
 from uvms_control.errors import ControlSetupError
 from uvms_control.s_surface import SSurface
 from uvms_core.signals import Array

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_control.config import CompensationConfig
+from uvms_control.arm_config import CompensationConfig
 from uvms_control.reference import ReferenceSample
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import end_effector, end_effector_jacobian

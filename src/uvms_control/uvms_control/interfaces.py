@@ -22,7 +22,14 @@ from uvms_core.signals import (
 
 
 class ControlLaw(Protocol):
-    """Controls vehicle and arm: estimated state and reference to wrench and joint torques."""
+    """Controls vehicle and arm: estimated state and reference to wrench and joint torques.
+
+    A law that wants to know more has a method `inform(budget, allocation)`, which is called before
+    each step: the `DisturbanceBudget` of the tick, with payload and thruster health where the
+    observer looks for them, and the `Allocation` of the tick before (None at the first), with what
+    the thrusters achieved. A law with an attribute `stability` (`Stability` or None after a step)
+    has it published and logged.
+    """
 
     @abstractmethod
     def step(
@@ -51,7 +58,9 @@ class ControlLaw(Protocol):
 class AllocationMethod(Protocol):
     """Shares a wrench out among the thrusters.
 
-    An attribute `warning` with a text, where there is one, is logged when the node starts.
+    An attribute `warning` with a text, where there is one, is logged when the node starts. A method
+    `inform(budget)`, where there is one, is called before each step with the `DisturbanceBudget`
+    of the tick before (None at the first), which tells of thrusters that fail.
     """
 
     @abstractmethod

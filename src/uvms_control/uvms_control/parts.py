@@ -10,7 +10,7 @@ from uvms_core import topics
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench
-from uvms_core.tick_gate import Covering, Same, Tick
+from uvms_core.tick_gate import Covering, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 
 
@@ -21,18 +21,22 @@ class ControllerPart(Part):
     outputs = topics.NODES[topics.CONTROLLER].outputs
     left_to_reader = (topics.JOINT_COMMAND,)  # the plant has brakes
 
-    def __init__(self, vehicle: Vehicle, config: ControlConfig) -> None:
+    def __init__(self, vehicle: Vehicle, config: ControlConfig, period: int) -> None:
         self._vehicle, self._config = vehicle, config
         self.law: ControlLaw = create(config, vehicle)
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),
             topics.DISTURBANCE: Same(),
+            topics.DISTURBANCE_BUDGET: Same(),
             topics.REFERENCE: Covering(),
+            topics.ALLOCATION: Previous(period),
         }
 
     def step(self, tick: Tick) -> Iterator[Output]:
         """One step of the law."""
+        if inform := getattr(self.law, "inform", None):
+            inform(tick[topics.DISTURBANCE_BUDGET.name], tick[topics.ALLOCATION.name])
         wrench, joints = self.law.step(
             tick[topics.ODOMETRY.name],
             tick[topics.JOINT_STATES.name],
@@ -41,6 +45,8 @@ class ControllerPart(Part):
         )
         yield topics.WRENCH_COMMAND, wrench
         yield topics.JOINT_COMMAND, joints
+        if (stability := getattr(self.law, "stability", None)) is not None:
+            yield topics.STABILITY, stability
 
     def restart(self, reason: str) -> None:
         """The law restarts: its integrals and filters are gone."""
@@ -58,13 +64,18 @@ class AllocatorPart(Part):
     trigger = topics.WRENCH_COMMAND
     outputs = topics.NODES[topics.THRUST_ALLOCATOR].outputs
 
-    def __init__(self, vehicle: Vehicle, config: AllocatorConfig) -> None:
+    def __init__(self, vehicle: Vehicle, config: AllocatorConfig, period: int) -> None:
         self._vehicle, self._config = vehicle, config
         self.method: AllocationMethod = create(config, vehicle)
-        self.inputs = {topics.WRENCH_COMMAND: Same()}
+        self.inputs = {
+            topics.WRENCH_COMMAND: Same(),
+            topics.DISTURBANCE_BUDGET: Previous(period),
+        }
 
     def step(self, tick: Tick) -> Iterator[Output]:
         """One allocation."""
+        if inform := getattr(self.method, "inform", None):
+            inform(tick[topics.DISTURBANCE_BUDGET.name])
         command, allocation = self.method.step(tick[topics.WRENCH_COMMAND.name])
         yield topics.THRUSTER_COMMAND, command
         yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, allocation.achieved)

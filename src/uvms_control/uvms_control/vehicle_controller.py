@@ -2,9 +2,9 @@
 
 import numpy as np
 
-from uvms_control.config import VehicleControlConfig
 from uvms_control.s_surface import SSurface
 from uvms_control.tracking_error import TrackingError
+from uvms_control.vehicle_config import VehicleControlConfig
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import hull_bias_wrench
 

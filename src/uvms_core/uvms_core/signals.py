@@ -11,7 +11,7 @@ floats must be finite, and plain arrays are checked only on the way from a messa
 of samples, which no part of the system reads: the vehicle file has the sensors' noise).
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Annotated
 
 import numpy as np
@@ -161,13 +161,45 @@ class Wrench:
 
 
 @dataclass(frozen=True)
+class Payload:
+    """What the gripper holds, as estimated from the forces that vehicle and joints feel."""
+
+    held: bool  # confirmed: taken into the models of controller, observer and planner
+    mass: float  # kg, with the water that it carries along
+    mass_sigma: float  # kg, standard deviation
+    weight: float  # N, in water, positive down
+    weight_sigma: float  # N
+    position: Array3  # m, its centre in the tool frame
+    position_sigma: Array3  # m
+
+
+@dataclass(frozen=True)
+class ThrusterHealth:
+    """How much of its command each thruster gives, as estimated from the motion of the vehicle."""
+
+    effectiveness: ByThruster  # share of the command: 1 is whole, 0 is dead
+    sigma: ByThruster  # standard deviation
+
+
+def _six_zeros() -> Array:
+    return np.zeros(6)
+
+
+def _nothing() -> Array:
+    return np.empty(0)
+
+
+@dataclass(frozen=True)
 class DisturbanceBudget:
-    """What acts on the vehicle besides the thrusters, each part once."""
+    """What acts on the vehicle besides the thrusters, each part once, and what explains it."""
 
     stamp: int
     restoring: Array6  # weight and buoyancy of hull and links, eq. (13)
     coupling: Array6  # reaction of the arm at its base without weight and buoyancy, (14)-(15)
     external: Array6  # what is left
+    external_sigma: Array6 = field(default_factory=_six_zeros)  # its std; zero: not known
+    payload: Payload | None = None  # None: the observer does not look for one
+    thrusters: ThrusterHealth | None = None  # None: the observer does not look at them
 
 
 @dataclass(frozen=True)
@@ -216,6 +248,24 @@ class Allocation:
     achieved: Array6  # wrench of these thrusts
     residual: Array6  # commanded minus achieved
     saturated: NDArray[np.bool_]  # (m,)
+    effectiveness: Array = field(default_factory=_nothing)
+    """(m,) share of its command that each thruster is taken to give; (0,): all of it."""
+
+
+@dataclass(frozen=True)
+class Stability:
+    """The Lyapunov function of the vehicle's control loop, by eq. (27)-(29)."""
+
+    stamp: int
+    lyapunov: float  # V of (27)
+    lyapunov_rate: float  # its rate, 1/s of the same unit
+    demand: float  # right side of the condition below (29): what motion and disturbance ask for
+    supply: float  # left side: what the thrusters' wrench gives
+
+    @property
+    def holds(self) -> bool:
+        """Whether the condition below (29) holds."""
+        return self.supply >= self.demand
 
 
 @dataclass(frozen=True)
@@ -232,6 +282,10 @@ class AppliedThrust:
     joint_command_stamp: int
     thruster_safe: bool
     joint_safe: bool
+
+
+BY_THRUSTER = (ThrusterCommand, Allocation, AppliedThrust, DisturbanceBudget)
+"""Signals whose messages carry the names of thrusters; those of others carry joints' or none."""
 
 
 @dataclass(frozen=True)

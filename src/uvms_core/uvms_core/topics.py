@@ -90,6 +90,14 @@ WRENCH_ACHIEVED = Topic(
     "wrench_achieved", "geometry_msgs/msg/WrenchStamped", signals.Wrench, BODY_FRAME
 )
 ALLOCATION = Topic("allocation", "uvms_msgs/msg/Allocation", signals.Allocation, BODY_FRAME)
+STABILITY = Topic(
+    "control/stability",
+    "uvms_msgs/msg/ControlStability",
+    signals.Stability,
+    BODY_FRAME,
+    is_occasional=True,
+)
+"""Of the controller: for the log alone, and not of every control law."""
 APPLIED_THRUST = Topic(
     "applied_thrust", "uvms_msgs/msg/AppliedThrust", signals.AppliedThrust, BODY_FRAME
 )
@@ -140,6 +148,7 @@ def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:
         THRUSTER_COMMAND,
         WRENCH_ACHIEVED,
         ALLOCATION,
+        STABILITY,
         APPLIED_THRUST,
         TRUE_ODOMETRY,
         TRUE_JOINT_STATES,
@@ -180,14 +189,27 @@ def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:
         ),
         NAVIGATION: NodeTopics((CLOCK, *fused), (ODOMETRY,)),
         DISTURBANCE_OBSERVER: NodeTopics(
-            (CLOCK, ODOMETRY, JOINT_STATES, WRENCH_ACHIEVED), (DISTURBANCE, DISTURBANCE_BUDGET)
+            (CLOCK, ODOMETRY, JOINT_STATES, WRENCH_ACHIEVED, ALLOCATION),
+            (DISTURBANCE, DISTURBANCE_BUDGET),
         ),
-        MOTION_PLANNER: NodeTopics((CLOCK, ODOMETRY, JOINT_STATES), (REFERENCE,), ACTIONS),
+        MOTION_PLANNER: NodeTopics(
+            (CLOCK, ODOMETRY, JOINT_STATES, DISTURBANCE_BUDGET, ALLOCATION), (REFERENCE,), ACTIONS
+        ),
         CONTROLLER: NodeTopics(
-            (CLOCK, ODOMETRY, JOINT_STATES, REFERENCE, DISTURBANCE), (WRENCH_COMMAND, JOINT_COMMAND)
+            (
+                CLOCK,
+                ODOMETRY,
+                JOINT_STATES,
+                REFERENCE,
+                DISTURBANCE,
+                DISTURBANCE_BUDGET,
+                ALLOCATION,
+            ),
+            (WRENCH_COMMAND, JOINT_COMMAND, STABILITY),
         ),
         THRUST_ALLOCATOR: NodeTopics(
-            (CLOCK, WRENCH_COMMAND), (THRUSTER_COMMAND, WRENCH_ACHIEVED, ALLOCATION)
+            (CLOCK, WRENCH_COMMAND, DISTURBANCE_BUDGET),
+            (THRUSTER_COMMAND, WRENCH_ACHIEVED, ALLOCATION),
         ),
     }
 

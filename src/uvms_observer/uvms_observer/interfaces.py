@@ -19,7 +19,11 @@ from uvms_core.signals import (
 
 
 class ObserverLaw(Protocol):
-    """Estimates the wrench that acts on the vehicle besides its thrusters."""
+    """Estimates the wrench that acts on the vehicle besides its thrusters.
+
+    An observer that wants the thrusts one by one has a method `inform(allocation)`, which is called
+    before each step with the `Allocation` of the tick before (None at the first).
+    """
 
     @abstractmethod
     def step(

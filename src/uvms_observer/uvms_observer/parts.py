@@ -147,10 +147,13 @@ class ObserverPart(Part):
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),
             topics.WRENCH_ACHIEVED: Previous(period),
+            topics.ALLOCATION: Previous(period),
         }
 
     def step(self, tick: Tick) -> Iterator[Output]:
         """One step of the observer."""
+        if inform := getattr(self.law, "inform", None):
+            inform(tick[topics.ALLOCATION.name])
         budget, total = self.law.step(
             tick[topics.ODOMETRY.name],
             tick[topics.JOINT_STATES.name],

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from uvms_core import topics
 from uvms_core.part import Output, Part
 from uvms_core.signals import JointStates, Odometry, to_nanoseconds
-from uvms_core.tick_gate import Same, Tick, held
+from uvms_core.tick_gate import Previous, Same, Tick, held
 from uvms_core.vehicle import Vehicle
 from uvms_planner.config import PlannerConfig
 from uvms_planner.planner import MotionPlanner
@@ -22,11 +22,16 @@ class PlannerPart(Part):
     outputs = topics.NODES[topics.MOTION_PLANNER].outputs
     in_loop = False
 
-    def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:
+    def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int, period: int) -> None:
         self._arguments = vehicle, config, seed
         self.planner = MotionPlanner(vehicle, config, seed)
         self.every = to_nanoseconds(config.step_s)
-        self.inputs = {topics.ODOMETRY: Same(), topics.JOINT_STATES: Same()}
+        self.inputs = {
+            topics.ODOMETRY: Same(),
+            topics.JOINT_STATES: Same(),
+            topics.DISTURBANCE_BUDGET: Previous(period),
+            topics.ALLOCATION: Previous(period),
+        }
         self.plan: PlannerStep | None = None
         self._state: tuple[Odometry, JointStates] | None = None
 

@@ -47,7 +47,7 @@ def rhythms(contents: Contents) -> Rhythms | None:
     except LogError:  # a finding of its own: `check.end`
         return None
     tick, step = _period(config, "plant.control_period_s"), _period(config, "planner.step_s")
-    found = {topic: Rhythm(tick) for topic in topics.of(vehicle)}
+    found = {each: Rhythm(tick) for each in topics.of(vehicle) if not each.is_occasional}
     for sensor in sensor_types(vehicle):
         rate = vehicle.sensors.mounted[sensor.name].rate_hz
         found[sensor.topic] = Rhythm(to_nanoseconds(1.0 / rate))

@@ -7,7 +7,7 @@ from uvms_analysis.log.schema import qos_yaml
 from uvms_analysis.log.writer import LogWriter
 from uvms_core.cdr import Codec, codec
 from uvms_core.messages import to_message
-from uvms_core.signals import Allocation, AppliedThrust, ThrusterCommand
+from uvms_core.signals import BY_THRUSTER
 from uvms_core.topics import CLOCK, Topic
 
 
@@ -46,5 +46,5 @@ class SignalWriter:
         self.write_plain(topic, make(*values), stamp)
 
     def _names(self, signal: Any) -> tuple[str, ...]:
-        thrusters = isinstance(signal, ThrusterCommand | Allocation | AppliedThrust)
+        thrusters = isinstance(signal, BY_THRUSTER)
         return self._thruster_names if thrusters else self._joint_names

@@ -24,13 +24,7 @@ from uvms_core.cdr import Codec, codec
 from uvms_core.checks import check
 from uvms_core.errors import SignalError
 from uvms_core.messages import from_message, to_message
-from uvms_core.signals import (
-    NANOSECONDS,
-    Allocation,
-    AppliedThrust,
-    PathGoal,
-    ThrusterCommand,
-)
+from uvms_core.signals import BY_THRUSTER, NANOSECONDS, PathGoal
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle
 
@@ -125,7 +119,7 @@ class MemoryWriter:
             kept.signals.append(read)
 
     def _names(self, signal: Any) -> tuple[str, ...]:
-        thrusters = isinstance(signal, ThrusterCommand | Allocation | AppliedThrust)
+        thrusters = isinstance(signal, BY_THRUSTER)
         return self._vehicle.thruster_names if thrusters else self._vehicle.joint_names
 
     def log(

@@ -16,7 +16,7 @@ from uvms_control.allocation.authority import (
 )
 from uvms_control.allocation.gap import ThrustGap
 from uvms_control.allocation.least_squares import BoundedLeastSquares, box_of
-from uvms_control.config import AllocatorConfig
+from uvms_control.allocator_config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
 from uvms_control.vehicle_data import least_thrusts, thruster_limits
 from uvms_core import checks

@@ -15,7 +15,7 @@ class ControllerNode(PartNode):
 
     def make_part(self) -> ControllerPart:
         """The control law that the parameters name."""
-        return ControllerPart(self.vehicle, self.config(ControlConfig))
+        return ControllerPart(self.vehicle, self.config(ControlConfig), self.period)
 
 
 def main(args=None) -> int:

@@ -15,7 +15,7 @@ class ThrustAllocatorNode(PartNode):
 
     def make_part(self) -> AllocatorPart:
         """The allocation method that the parameters name."""
-        part = AllocatorPart(self.vehicle, self.config(AllocatorConfig))
+        part = AllocatorPart(self.vehicle, self.config(AllocatorConfig), self.period)
         if warning := getattr(part.method, "warning", None):
             self.get_logger().warning(warning)
         return part

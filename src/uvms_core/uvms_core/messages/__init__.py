@@ -27,6 +27,7 @@ _CONVERSIONS: dict[type, Conversion] = {
     signals.JointCommand: Conversion(motion.joint_command_to, motion.joint_command_from),
     signals.ThrusterCommand: Conversion(motion.thruster_command_to, motion.thruster_command_from),
     signals.Allocation: Conversion(motion.allocation_to, motion.allocation_from),
+    signals.Stability: Conversion(motion.stability_to, motion.stability_from),
     signals.AppliedThrust: Conversion(motion.applied_to, motion.applied_from),
     signals.Reference: Conversion(reference.reference_to, reference.reference_from),
     signals.PathGoal: Conversion(actions.path_to, actions.path_from),

@@ -11,11 +11,15 @@ from uvms_core.messages.parts import Plain
 from uvms_core.signals import (
     Allocation,
     AppliedThrust,
+    Array,
     DisturbanceBudget,
     JointCommand,
     JointStates,
     Odometry,
+    Payload,
+    Stability,
     ThrusterCommand,
+    ThrusterHealth,
     Wrench,
 )
 from uvms_core.topic import Topic
@@ -149,6 +153,29 @@ def budget_to(topic: Topic, value: DisturbanceBudget, names: Sequence[str]) -> P
         "restoring": parts.wrench(value.restoring),
         "coupling": parts.wrench(value.coupling),
         "external": parts.wrench(value.external),
+        "external_sigma": parts.wrench(value.external_sigma),
+        "payload": [] if value.payload is None else [_payload_to(value.payload)],
+        "thrusters": [] if value.thrusters is None else [_health_to(value.thrusters, names)],
+    }
+
+
+def _payload_to(value: Payload) -> Plain:
+    return {
+        "held": value.held,
+        "mass": value.mass,
+        "mass_sigma": value.mass_sigma,
+        "weight": value.weight,
+        "weight_sigma": value.weight_sigma,
+        "position": parts.vector(value.position),
+        "position_sigma": parts.vector(value.position_sigma),
+    }
+
+
+def _health_to(value: ThrusterHealth, names: Sequence[str]) -> Plain:
+    return {
+        "thruster_names": list(names),
+        "effectiveness": parts.floats(value.effectiveness),
+        "sigma": parts.floats(value.sigma),
     }
 
 
@@ -160,6 +187,48 @@ def budget_from(topic: Topic, msg: Any, names: Sequence[str]) -> DisturbanceBudg
         fields.wrench(topic, "restoring", msg.restoring),
         fields.wrench(topic, "coupling", msg.coupling),
         fields.wrench(topic, "external", msg.external),
+        *_explained_from(topic, msg, names),
+    )
+
+
+def _explained_from(
+    topic: Topic, msg: Any, names: Sequence[str]
+) -> tuple[Array, Payload | None, ThrusterHealth | None]:
+    """What logs from before these fields do not have is not known."""
+    if not hasattr(msg, "external_sigma"):
+        return np.zeros(6), None, None
+    for name, found in (("payload", msg.payload), ("thrusters", msg.thrusters)):
+        if len(found) > 1:
+            raise SignalError(f"{topic.name}: {name} has {len(found)} values; it may have one")
+    return (
+        fields.wrench(topic, "external_sigma", msg.external_sigma),
+        _payload_from(topic, msg.payload[0]) if msg.payload else None,
+        _health_from(topic, msg.thrusters[0], names) if msg.thrusters else None,
+    )
+
+
+def _payload_from(topic: Topic, msg: Any) -> Payload:
+    mass, mass_sigma, weight, weight_sigma = (
+        fields.number(topic, f"payload.{name}", getattr(msg, name))
+        for name in ("mass", "mass_sigma", "weight", "weight_sigma")
+    )
+    return Payload(
+        bool(msg.held),
+        mass,
+        mass_sigma,
+        weight,
+        weight_sigma,
+        fields.vector(topic, "payload.position", msg.position),
+        fields.vector(topic, "payload.position_sigma", msg.position_sigma),
+    )
+
+
+def _health_from(topic: Topic, msg: Any, names: Sequence[str]) -> ThrusterHealth:
+    index = fields.order(topic, "thrusters.thruster_names", msg.thruster_names, names)
+    count = len(msg.thruster_names)
+    return ThrusterHealth(
+        fields.floats(topic, "thrusters.effectiveness", msg.effectiveness, count)[index],
+        fields.floats(topic, "thrusters.sigma", msg.sigma, count)[index],
     )
 
 
@@ -172,6 +241,7 @@ def allocation_to(topic: Topic, value: Allocation, names: Sequence[str]) -> Plai
         "saturated": value.saturated.tolist(),
         "achieved": parts.wrench(value.achieved),
         "residual": parts.wrench(value.residual),
+        "effectiveness": parts.floats(value.effectiveness),
     }
 
 
@@ -191,6 +261,38 @@ def allocation_from(topic: Topic, msg: Any, names: Sequence[str]) -> Allocation:
         fields.wrench(topic, "achieved", msg.achieved),
         fields.wrench(topic, "residual", msg.residual),
         saturated[index],
+        _effectiveness_from(topic, msg, count, index),
+    )
+
+
+def _effectiveness_from(topic: Topic, msg: Any, count: int, index: Any) -> Array:
+    """Empty where all thrusters are whole, and in logs from before this field."""
+    values = getattr(msg, "effectiveness", ())
+    if not len(values):
+        return np.empty(0)
+    return fields.floats(topic, "effectiveness", values, count)[index]
+
+
+def stability_to(topic: Topic, value: Stability, names: Sequence[str]) -> Plain:
+    """uvms_msgs/ControlStability."""
+    return {
+        "header": parts.header(topic, value.stamp),
+        "lyapunov": value.lyapunov,
+        "lyapunov_rate": value.lyapunov_rate,
+        "demand": value.demand,
+        "supply": value.supply,
+    }
+
+
+def stability_from(topic: Topic, msg: Any, names: Sequence[str]) -> Stability:
+    """From uvms_msgs/ControlStability."""
+    fields.check_frame(topic, msg.header)
+    return Stability(
+        fields.stamp_of(msg.header.stamp),
+        *(
+            fields.number(topic, name, getattr(msg, name))
+            for name in ("lyapunov", "lyapunov_rate", "demand", "supply")
+        ),
     )
 
 

@@ -25,7 +25,7 @@ from uvms_core.ros.convert import message_class
 from uvms_core.ros.parameters import declare_config
 from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
 from uvms_core.ros.watchdog import LOOK_S, Watchdog
-from uvms_core.signals import NANOSECONDS, to_nanoseconds
+from uvms_core.signals import BY_THRUSTER, NANOSECONDS, to_nanoseconds
 from uvms_core.tick_gate import Covering, Input, Periodic, Tick, TickGate
 from uvms_core.timeline import Jump, Timeline
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
@@ -335,11 +335,7 @@ class UvmsNode(Node):
 
     def names_of(self, topic: Topic) -> tuple[str, ...]:
         """Names of the topic's values: of thrusters or of joints."""
-        by_thruster = topic in (
-            topics.THRUSTER_COMMAND,
-            topics.ALLOCATION,
-            topics.APPLIED_THRUST,
-        )
+        by_thruster = topic.signal in BY_THRUSTER
         return self.vehicle.thruster_names if by_thruster else self.vehicle.joint_names
 
     def missing_peers(self) -> list[str]:

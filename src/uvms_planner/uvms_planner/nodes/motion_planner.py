@@ -42,7 +42,7 @@ class MotionPlannerNode(PartNode):
 
     def make_part(self) -> PlannerPart:
         """The planner with the method that the parameters name."""
-        return PlannerPart(self.vehicle, self.config(PlannerConfig), self.seed)
+        return PlannerPart(self.vehicle, self.config(PlannerConfig), self.seed, self.period)
 
     def take_tick(self, tick: Tick) -> None:
         """Plan; every planner step is reported, and the goal's client hears of it."""
