@@ -16,7 +16,7 @@ from uvms_dynamics import build_model, coupling_wrench, restoring_wrench
 from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
-from uvms_observer.disturbance.tracking import TrackingFilter
+from uvms_dynamics.tracking import TrackingFilter
 
 NOT_MOVING = np.zeros(6)
 
