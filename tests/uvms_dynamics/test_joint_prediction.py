@@ -47,7 +47,8 @@ def late(motion, age, seconds=9.0):
 def test_a_sample_of_the_tick_is_used_as_it_is():
     joints = sample(4.0, swing)
     found = JointPrediction(VEHICLE).step(joints, joints.stamp)
-    assert found.q is joints.position and found.q_dot is joints.velocity
+    assert found.q is joints.position
+    assert found.q_dot is joints.velocity
 
 
 def test_a_constant_acceleration_is_carried_exactly():
@@ -80,7 +81,7 @@ def test_older_than_the_loop_stands_is_an_error():
     assert limit == pytest.approx(0.225)
     joints = sample(2 * PERIOD, swing)
     predict.check(joints, to_nanoseconds(3 * PERIOD))
-    with pytest.raises(SignalError, match="must lie within 0.5 s"):
+    with pytest.raises(SignalError, match=r"must lie within 0\.5 s"):
         JointPrediction(VEHICLE).check(joints, to_nanoseconds(2 * PERIOD + 0.6))
-    with pytest.raises(SignalError, match="must lie within 0.08 s"):
+    with pytest.raises(SignalError, match=r"must lie within 0\.08 s"):
         JointPrediction(VEHICLE, age_limit_s=0.08).check(joints, to_nanoseconds(2 * PERIOD + 0.1))

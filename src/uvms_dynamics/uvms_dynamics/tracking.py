@@ -100,7 +100,7 @@ def follow(
 
 @exact_kernel
 def _take_in(x: Array, P: Array, m: int, measured: Array, variance: float, scratch: Array) -> None:
-    """Correct x and P in place by a measurement of derivative m: (I - K H) P (I - K H)^T + K R K^T."""
+    """Correct x and P in place by a measurement of derivative m, in the Joseph form."""
     order, total = x.shape[0], P[m, m] + variance
     gain = P[:, m] / total
     for k in range(x.shape[1]):
