@@ -12,7 +12,7 @@ from uvms_analysis.log.writer import LogWriter
 from uvms_bringup.ros.replay import Metronome
 from uvms_bringup.ros.schedule import TickOf, schedule
 from uvms_core import topics
-from uvms_core.signals import GpsSample, Wrench
+from uvms_core.signals import DisturbanceBudget, GpsSample, Wrench
 
 PERIOD, STEP = 50_000_000, 500_000_000
 
