@@ -2,13 +2,11 @@
 
 import numpy as np
 
-from uvms_control.arm_controller import ArmController, floating_inertia
-from uvms_control.compensation import EndEffectorCompensation, JointCorrection
+from uvms_control.arm_law import ArmLaw
 from uvms_control.config import ControlConfig
-from uvms_control.reference import ReferenceSample, sample_reference
+from uvms_control.reference import sample_reference
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
-from uvms_control.vehicle_data import effort_limits
 from uvms_core import checks
 from uvms_core.signals import (
     Array,
@@ -19,24 +17,20 @@ from uvms_core.signals import (
     Wrench,
     to_seconds,
 )
-from uvms_core.vehicle import Vehicle, joint_limits
-from uvms_dynamics import build_model, inverse_dynamics, joint_passive_torque, mass_matrix
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import build_model, mass_matrix
 
 
 class Controller:
-    """Vehicle by eq. (22), arm by eq. (19); see `VehicleController` and `ArmController`."""
+    """Vehicle by eq. (22), arm by eq. (19); see `VehicleController` and `ArmLaw`."""
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         self._config = config
-        self._n = vehicle.n_joints
         self._joint_names = vehicle.joint_names
         self._model = build_model(vehicle)
         self.vehicle = VehicleController(self._model, config.vehicle)
-        lower, upper = joint_limits(vehicle)
-        self._away_from_stops = 0.5 * (lower + upper)
-        self.arm = ArmController(config.arm, effort_limits(vehicle))
-        self.compensation = EndEffectorCompensation(self._model, config.compensation, lower, upper)
+        self.arm = ArmLaw(vehicle, self._model, config)
         self.reset()
 
     def reset(self) -> None:
@@ -45,7 +39,6 @@ class Controller:
         self._reference: Reference | None = None  # that was checked
         self.vehicle.reset()
         self.arm.reset()
-        self.compensation.reset()
 
     def step(
         self,
@@ -65,9 +58,8 @@ class Controller:
         tracking = tracking_error(odometry, desired)
         mass = mass_matrix(self._model, joints.position)
         wrench = self._wrench(odometry, mass[:6, :6], disturbance, tracking, dt)
-        feed_forward = self._arm_model_torque(odometry, joints, desired, tracking)
-        inertia = floating_inertia(mass)
-        effort = self._joint_effort(odometry, joints, inertia, feed_forward, desired, dt)
+        nu_dot = tracking.acceleration if self._config.enabled else np.zeros(6)
+        effort = self.arm.step(odometry, joints, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
     def _wrench(
@@ -84,55 +76,6 @@ class Controller:
         if self._config.observer and disturbance is not None:
             known = disturbance.wrench
         return self.vehicle.step(odometry, inertia, known, tracking, dt)
-
-    def _joint_effort(
-        self,
-        odometry: Odometry,
-        joints: JointStates,
-        inertia: Array,
-        feed_forward: Array,
-        desired: ReferenceSample,
-        dt: float,
-    ) -> Array:
-        correction = self._correction(odometry, desired, dt)
-        q_dot = desired.q_dot + correction.rate
-        error = desired.q + correction.angle - joints.position
-        steered = self.arm.steered_rate(error, q_dot, dt)
-        friction = joint_passive_torque(self._model, self._away_from_stops, steered)
-        load = feed_forward - self._config.arm.friction_compensation * friction
-        return self.arm.effort(error, q_dot - joints.velocity, inertia, load, dt)
-
-    def _correction(
-        self, odometry: Odometry, desired: ReferenceSample, dt: float
-    ) -> JointCorrection:
-        if self._config.enabled and self._config.compensate_vehicle_motion:
-            return self.compensation.step(odometry, desired, dt)
-        return JointCorrection(np.zeros(self._n), np.zeros(self._n))
-
-    def _arm_model_torque(
-        self,
-        odometry: Odometry,
-        joints: JointStates,
-        desired: ReferenceSample,
-        tracking: TrackingError,
-    ) -> Array:
-        """K Delta-u of eq. (19): what the model needs for the reference acceleration (n,) N m.
-
-        Weight, buoyancy, drag and the vehicle's reference acceleration are in it, friction is not.
-        The vehicle's feedback acceleration is left out: what it really causes is uncertain when a
-        disturbance is not fed forward or a thruster saturates.
-        """
-        vehicle = tracking.acceleration if self._config.enabled else np.zeros(6)
-        whole = inverse_dynamics(
-            self._model,
-            odometry.quaternion,
-            odometry.nu,
-            vehicle,
-            joints.position,
-            joints.velocity,
-            desired.q_ddot,
-        )
-        return whole[6:]
 
     def _elapsed(self, stamp: int) -> float:
         """Seconds since the last step; 0 at the first."""
