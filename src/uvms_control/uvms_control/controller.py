@@ -6,21 +6,31 @@ from uvms_control.arm_controller import ArmController, floating_inertia
 from uvms_control.compensation import EndEffectorCompensation, JointCorrection
 from uvms_control.config import ControlConfig
 from uvms_control.reference import ReferenceSample, sample_reference
+from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
 from uvms_control.vehicle_data import effort_limits
 from uvms_core import checks
 from uvms_core.signals import (
+    Allocation,
     Array,
+    DisturbanceBudget,
     JointCommand,
     JointStates,
     Odometry,
     Reference,
+    Stability,
     Wrench,
     to_seconds,
 )
 from uvms_core.vehicle import Vehicle, joint_limits
-from uvms_dynamics import build_model, inverse_dynamics, joint_passive_torque, mass_matrix
+from uvms_dynamics import (
+    build_model,
+    hull_bias_wrench,
+    inverse_dynamics,
+    joint_passive_torque,
+    mass_matrix,
+)
 
 
 class Controller:
@@ -37,15 +47,23 @@ class Controller:
         self._away_from_stops = 0.5 * (lower + upper)
         self.arm = ArmController(config.arm, effort_limits(vehicle))
         self.compensation = EndEffectorCompensation(self._model, config.compensation, lower, upper)
+        law = self.vehicle.law
+        self._monitor = StabilityMonitor(law.stiffness, law.damping)
         self.reset()
 
     def reset(self) -> None:
         """Return to the state before the first step."""
+        self.stability: Stability | None = None
+        self._lacking = np.zeros(6)  # of the last wrench, beyond the thrusters' limits
         self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
         self.vehicle.reset()
         self.arm.reset()
         self.compensation.reset()
+
+    def inform(self, budget: DisturbanceBudget | None, allocation: Allocation | None) -> None:
+        """What the thrusters made of the last wrench (None at the first tick)."""
+        self._lacking = np.zeros(6) if allocation is None else allocation.residual
 
     def step(
         self,
@@ -80,10 +98,16 @@ class Controller:
     ) -> Array:
         if not self._config.enabled:
             return np.zeros(6)
-        known = np.zeros(6)
-        if self._config.observer and disturbance is not None:
-            known = disturbance.wrench
-        return self.vehicle.step(odometry, inertia, known, tracking, dt)
+        acts = np.zeros(6) if disturbance is None else disturbance.wrench
+        known = acts if self._config.observer else np.zeros(6)
+        wrench = self.vehicle.step(odometry, inertia, known, tracking, dt)
+        bias = hull_bias_wrench(self._model, odometry.nu)
+        needed = inertia @ tracking.acceleration + bias - acts
+        given = wrench - self._lacking
+        self.stability = self._monitor.at(
+            odometry.stamp, tracking.error, tracking.rate, inertia, needed, given
+        )
+        return wrench
 
     def _joint_effort(
         self,
