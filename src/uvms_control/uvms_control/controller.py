@@ -9,7 +9,8 @@ from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
 from uvms_control.design.gains import VehicleGains, vehicle_gains
 from uvms_control.reference import ReferenceSample, sample_ahead, sample_reference
-from uvms_control.tracking_error import tracking_error
+from uvms_control.stability import StabilityMonitor
+from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_law import VehicleLaw, at_reference, joints_ahead
 from uvms_core import checks
 from uvms_core.signals import (
@@ -20,12 +21,13 @@ from uvms_core.signals import (
     JointStates,
     Odometry,
     Reference,
+    Stability,
     Wrench,
     to_nanoseconds,
     to_seconds,
 )
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics import build_model, hull_bias_wrench, mass_matrix
 
 ATTITUDE = slice(3, 5)
 """Roll and pitch, along which the arm's weight acts."""
@@ -48,6 +50,7 @@ class Controller:
         self._axes = axes_of(vehicle)
         self._effectiveness = np.empty(0)
         self._gains: VehicleGains | None = None
+        self._monitor: StabilityMonitor | None = None
         self._lead = 0
         self.arm = ArmLaw(vehicle, self._model, config)
         self._budget: DisturbanceBudget | None = None
@@ -60,12 +63,15 @@ class Controller:
             ControlSetupError: the loop would not be stable with gains of the configuration.
         """
         self._gains = vehicle_gains(self._vehicle, period, self._config.gains)
+        self._monitor = StabilityMonitor(self._gains.stiffness, self._gains.damping)
         self._lead = to_nanoseconds(float(np.max(self._axes.lag[ATTITUDE])) + 0.5 * period)
 
     def reset(self) -> None:
         """Return to the state before the first step."""
         self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
+        self.stability: Stability | None = None
+        self._lacking = np.zeros(6)  # of the last wrench, beyond the thrusters' limits
         self._law.reset()
         self.arm.reset()
 
@@ -73,9 +79,10 @@ class Controller:
         """What explains the disturbance, and what the thrusters gave a tick ago."""
         self._budget = budget
         self.arm.inform(budget)
-        if allocation is not None and not np.array_equal(
-            allocation.effectiveness, self._effectiveness
-        ):
+        if allocation is None:
+            return
+        self._lacking = allocation.residual
+        if not np.array_equal(allocation.effectiveness, self._effectiveness):
             self._effectiveness = allocation.effectiveness
             self._axes = axes_of(self._vehicle, allocation.effectiveness)
 
@@ -97,11 +104,34 @@ class Controller:
         mass = mass_matrix(self._model, joints.position)
         nu_dot, wrench = np.zeros(6), np.zeros(6)
         if self._config.enabled:
-            nu_dot, wrench = self._vehicle_wrench(
-                odometry, joints, mass[:6, :6], self._known(disturbance), desired, reference, dt
+            inertia = np.ascontiguousarray(mass[:6, :6])
+            known = self._known(disturbance)
+            tracking, wrench = self._vehicle_wrench(
+                odometry, joints, inertia, known, desired, reference, dt
             )
+            self._judge(odometry, inertia, disturbance, tracking, wrench)
+            nu_dot = tracking.acceleration
         effort = self.arm.step(odometry, joints, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
+
+    def _judge(
+        self,
+        odometry: Odometry,
+        inertia: Array,
+        disturbance: Wrench | None,
+        tracking: TrackingError,
+        wrench: Array,
+    ) -> None:
+        """Stability of this tick, with the wrench as far as the thrusters give it."""
+        if self._monitor is None:
+            return
+        acts = np.zeros(6) if disturbance is None else disturbance.wrench
+        bias = hull_bias_wrench(self._model, odometry.nu)
+        needed = inertia @ tracking.acceleration + bias - acts
+        given = wrench - self._lacking
+        self.stability = self._monitor.at(
+            odometry.stamp, tracking.error, tracking.rate, inertia, needed, given
+        )
 
     def _known(self, disturbance: Wrench | None) -> Array:
         """F_dis (6,), what acts ON the vehicle; zeros where it is not fed forward."""
@@ -118,14 +148,14 @@ class Controller:
         desired: ReferenceSample,
         reference: Reference,
         dt: float,
-    ) -> tuple[Array, Array]:
-        """Reference acceleration (6,) in the body frame, and the wrench (6,)."""
+    ) -> tuple[TrackingError, Array]:
+        """Errors with the reference's acceleration, and the wrench (6,)."""
         if self._gains is None and dt > 0.0:
             self.prepare(dt)
         ahead = sample_ahead(reference, odometry.stamp, self._lead)
         tracking = tracking_error(odometry, replace(desired, nu_dot=ahead.nu_dot))
         if self._gains is None:
-            return tracking.acceleration, -known
+            return tracking, -known
         if known.any():
             known = at_reference(
                 self._model,
@@ -140,7 +170,7 @@ class Controller:
         wrench = self._law.step(
             self._model, self._axes, self._gains, odometry, mass, tracking, known, dt
         )
-        return tracking.acceleration, wrench
+        return tracking, wrench
 
     def _elapsed(self, stamp: int) -> float:
         """Seconds since the last step; 0 at the first."""

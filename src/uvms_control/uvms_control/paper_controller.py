@@ -3,7 +3,8 @@
 from uvms_control.config import ControlConfig
 from uvms_control.controller import Controller
 from uvms_control.reference import ReferenceSample
-from uvms_control.tracking_error import tracking_error
+from uvms_control.stability import StabilityMonitor
+from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
 from uvms_core.signals import Array, JointStates, Odometry, Reference
 from uvms_core.vehicle import Vehicle
@@ -20,6 +21,10 @@ class PaperController(Controller):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         super().__init__(vehicle, config)
         self.vehicle = VehicleController(self._model, config.vehicle)
+        self._monitor = StabilityMonitor(self.vehicle.law.stiffness, self.vehicle.law.damping)
+
+    def prepare(self, period: float) -> None:
+        """Nothing: the gains are those of the configuration."""
 
     def reset(self) -> None:
         """Return to the state before the first step."""
@@ -36,7 +41,7 @@ class PaperController(Controller):
         desired: ReferenceSample,
         reference: Reference,
         dt: float,
-    ) -> tuple[Array, Array]:
-        """Reference acceleration (6,) in the body frame, and the wrench (6,)."""
+    ) -> tuple[TrackingError, Array]:
+        """Errors with the reference's acceleration, and the wrench (6,)."""
         tracking = tracking_error(odometry, desired)
-        return tracking.acceleration, self.vehicle.step(odometry, mass, known, tracking, dt)
+        return tracking, self.vehicle.step(odometry, mass, known, tracking, dt)
