@@ -4,14 +4,14 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_control.allocation.authority import AXES, axes_without_authority
+from uvms_control.controlled_axes import axes_of
 from uvms_control.design.axis import Axis
 from uvms_control.design.sensor_noise import sensor_noise
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.resistance import axis_resistance
 from uvms_core.vehicle.statics import first_moment
-from uvms_dynamics import build_model, mass_matrix, thruster_matrix
+from uvms_dynamics import build_model, mass_matrix
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Timing:
 
 
 def vehicle_axes(vehicle: Vehicle, q: Array, timing: Timing) -> tuple[Axis | None, ...]:
-    """Surge, sway, heave, roll, pitch, yaw near level; None: nothing acts along it alone.
+    """Surge, sway, heave, roll, pitch, yaw near level; None: it is left to the hull.
 
     q (n,) rad: posture of the arm. Inertia is the diagonal of the whole system's mass matrix (what
     the thrusters must move), righting that of weight and buoyancy about a level vehicle, drag the
@@ -56,22 +56,9 @@ def vehicle_axes(vehicle: Vehicle, q: Array, timing: Timing) -> tuple[Axis | Non
 
 
 def axis_thrust(vehicle: Vehicle) -> tuple[Array, Array]:
-    """Authority (6,), N and N m, and lag (6,), s, along each axis with the others at zero.
+    """Authority (6,), N and N m, and lag (6,), s, of the axes that the thrusters control.
 
-    Of the thrusts for a unit wrench those are taken that are smallest as shares of the limits (the
-    least-norm ones); the authority is where the first of them is at its limit, in the weaker of its
-    directions if it reverses at all. 0 where the thrusters cannot push along the axis alone.
+    0 along the others, which are left to the hull; see `ControlledAxes`.
     """
-    matrix, thrusters = thruster_matrix(vehicle), vehicle.thrusters
-    limits = np.array([_weaker(thruster.astern_n, thruster.ahead_n) for thruster in thrusters])
-    shares = np.abs(np.linalg.pinv(matrix * limits))
-    without = [AXES.index(axis) for axis in axes_without_authority(matrix)]
-    authority = 1.0 / np.maximum(shares.max(axis=0), 1e-300)
-    authority[without] = 0.0
-    constants = np.array([thruster.time_constant_s for thruster in thrusters])
-    acts = shares > 1e-6 * shares.max(axis=0)
-    return authority, np.max(acts * constants[:, None], axis=0)
-
-
-def _weaker(astern: float, ahead: float) -> float:
-    return min(-astern, ahead) if astern < 0.0 else ahead
+    axes = axes_of(vehicle)
+    return axes.authority, axes.lag
