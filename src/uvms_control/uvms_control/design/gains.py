@@ -10,9 +10,10 @@ from math import sqrt
 
 import numpy as np
 
-from uvms_control.controlled_axes import ControlledAxes
+from uvms_control.controlled_axes import AXES, ControlledAxes
 from uvms_control.design.axis import Axis, AxisGains
 from uvms_control.design.bandwidth import AxisDesign, Limits, largest_bandwidth
+from uvms_control.design.conditions import require_stable
 from uvms_control.design.vehicle_axes import Timing, vehicle_axes
 from uvms_control.vehicle_config import GainConfig
 from uvms_core.signals import Array
@@ -32,12 +33,14 @@ class VehicleGains:
     Attributes:
         stiffness: (6,) P, acceleration per error, 1/s^2.
         damping: (6,) D, acceleration per rate of the error, 1/s.
+        righting: (6,) c / m that the hull adds to the stiffness, 1/s^2.
         observer: (6,) K, bandwidth of the external wrench's estimate that goes with them, rad/s.
         authority_share: of an axis's thrust that the feedback may ask for.
     """
 
     stiffness: Array
     damping: Array
+    righting: Array
     observer: Array
     authority_share: float
 
@@ -51,12 +54,17 @@ class VehicleGains:
 
 
 def vehicle_gains(vehicle: Vehicle, period: float, config: GainConfig) -> VehicleGains:
-    """The gains for a control period in s."""
+    """The gains for a control period in s.
+
+    Raises:
+        ControlSetupError: the loop would not be stable with a bandwidth of the configuration.
+    """
     designs = axis_designs(vehicle, period, config)
     gains = [AxisGains(0.0, 0.0) if each is None else each.gains for each in designs]
     return VehicleGains(
         np.array([each.stiffness for each in gains]),
         np.array([each.damping for each in gains]),
+        np.array([0.0 if each is None else max(each.axis.hull_stiffness, 0.0) for each in designs]),
         np.array([each.observer for each in gains]),
         config.authority_share,
     )
@@ -97,6 +105,16 @@ def _design(axis: Axis | None, k: int, limits: Limits, config: GainConfig) -> Ax
         return largest_bandwidth(axis, limits)
     bandwidth = config.bandwidth_rad_s[k]
     ratio = 1.0 if config.damping_ratio is None else config.damping_ratio[k]
-    damping = 2.0 * ratio * sqrt(max(bandwidth**2 + axis.hull_stiffness, 0.0))
-    gains = AxisGains(bandwidth**2, damping, limits.observer * bandwidth)
-    return AxisDesign(axis, bandwidth, ratio, gains, "asked for")
+
+    def gains_at(value: float, zeta: float) -> AxisGains:
+        damping = 2.0 * zeta * sqrt(max(value**2 + axis.hull_stiffness, 0.0))
+        return AxisGains(value**2, damping, limits.observer * value)
+
+    # With a usual damping ratio first: what only a large one breaks is not the bandwidth's fault.
+    usual = min(ratio, 1.0)
+    name = f"control.gains.{{}} of {AXES[k]}".format
+    require_stable(
+        name("bandwidth_rad_s"), bandwidth, " rad/s", axis, lambda value: gains_at(value, usual)
+    )
+    require_stable(name("damping_ratio"), ratio, "", axis, lambda value: gains_at(bandwidth, value))
+    return AxisDesign(axis, bandwidth, ratio, gains_at(bandwidth, ratio), "asked for")
