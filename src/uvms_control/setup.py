@@ -35,7 +35,8 @@ setup(
         ],
         "uvms.controllers": ["s_surface = uvms_control.controller:Controller"],
         "uvms.allocators": [
-            "weighted_least_squares = uvms_control.allocation:ThrustAllocator",
+            "lexicographic = uvms_control.allocation:ThrustAllocator",
+            "weighted_least_squares = uvms_control.allocation:WeightedAllocator",
         ],
         "uvms.kernels": ["uvms_control = uvms_control"],
     },
