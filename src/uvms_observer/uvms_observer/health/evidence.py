@@ -1,0 +1,109 @@
+"""What a stretch of time says about each thruster: a test of likelihood ratios over one window.
+
+The wrench that motion needs beyond whole thrusters is, tick by tick,
+
+    r(t) = d(t) - b_i (1 - e_i) T_i(t) + noise       from the tick t_0 on, at which i fails,
+
+with the thruster's column b_i, its lagged thrust T_i and what is left of it, e_i. A stuck thruster
+gives a constant u_i instead: r = d - b_i (T_i - u_i). With d constant over the window and noise of
+known size, each onset and each thruster is a linear regression along b_i. Channels are weighted by
+1 / sigma^2; what lies across b_i must stay at the noise: a disturbance along exactly this direction
+and in step with this thrust is what no current does (Willsky and Jones 1976, "A generalized
+likelihood ratio approach", whose growing bank of onsets is cut to the window here).
+"""
+
+import numpy as np
+
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+
+NONE, WEAK, STUCK = 0, 1, 2
+"""What is found: nothing, a share that is left, a thrust that does not follow."""
+
+COLUMNS = 9
+GAIN, LEFT, SHARE, SIGMA, ONSET, KIND, THRUST, INFORMATION, TOTAL = range(COLUMNS)
+"""Columns of the evidence: fall of chi^2 against no fault; chi^2 per value that is left; lost share
+and its std; tick of the onset in the window; WEAK or STUCK; the stuck thrust, N; what the whole window
+tells of the share, 1 / variance; chi^2 per value without any fault."""
+
+
+@exact_kernel
+def weigh(residual, thrust, columns, weights, low, high, step, evidence):
+    """Fill `evidence` (m, COLUMNS) from a window.
+
+    Args:
+        residual: r (k, 6), oldest first.
+        thrust: lagged thrusts (k, m), N.
+        columns: thruster matrix (6, m).
+        weights: 1 / sigma^2 (6,).
+        low, high: bounds (m,) of the lost shares.
+        step: onsets tried are this many ticks apart.
+        evidence: (m, COLUMNS), written.
+    """
+    k, m = thrust.shape
+    total = 0.0
+    for c in range(6):
+        mean = 0.0
+        for t in range(k):
+            mean += residual[t, c]
+        mean /= k
+        for t in range(k):
+            total += weights[c] * (residual[t, c] - mean) ** 2
+    along = np.empty(k)
+    for i in range(m):
+        scale = 0.0
+        for c in range(6):
+            scale += weights[c] * columns[c, i] ** 2
+        for t in range(k):
+            along[t] = 0.0
+            for c in range(6):
+                along[t] += weights[c] * columns[c, i] * residual[t, c]
+            along[t] /= scale
+        _weigh_one(along, thrust, i, scale, low[i], high[i], step, total, evidence)
+
+
+@exact_inner
+def _weigh_one(along, thrust, i, scale, low, high, step, total, evidence):
+    """The best onset of thruster i: `along` (k,) is r in newtons of its thrust."""
+    k = along.shape[0]
+    mean = 0.0
+    for t in range(k):
+        mean += along[t]
+    mean /= k
+    evidence[i, GAIN] = 0.0
+    evidence[i, KIND] = NONE
+    evidence[i, INFORMATION], evidence[i, TOTAL] = 0.0, total / (6.0 * k)
+    count = ft = ff = ty = sy = 0.0  # sums after the onset: T, T^2, T y, y
+    for t in range(k - 1, -1, -1):
+        value, y = thrust[t, i], along[t] - mean
+        count += 1.0
+        ft += value
+        ff += value * value
+        ty += value * y
+        sy += y
+        if t % step or count < 4.0:
+            continue
+        tt = ff - ft * ft / k  # of the regressor with the window's mean taken out
+        if tt > 1e-9:
+            share = min(max(-ty / tt, low), high)
+            gain = -scale * (2.0 * share * ty + share * share * tt)
+            _keep(evidence, i, gain, total, k, share, 1.0 / np.sqrt(scale * tt), t, WEAK, 0.0)
+            if t == 0:
+                evidence[i, INFORMATION] = scale * tt
+        if t > 0:  # a constant from the start cannot be told from a disturbance
+            bb, tb = count - count * count / k, ft - ft * count / k
+            stuck = (sy + high * tb) / bb
+            gain = -scale * (high * high * tt + 2.0 * high * ty - bb * stuck * stuck)
+            _keep(evidence, i, gain, total, k, high, 1.0 / np.sqrt(scale * bb), t, STUCK, stuck)
+
+
+@exact_inner
+def _keep(evidence, i, gain, total, k, share, sigma, onset, kind, stuck):
+    """Note the better explanation; that of a stuck thruster has one parameter more to pay for."""
+    price = 0.0 if kind == WEAK else np.log(6.0 * k)
+    if gain - price <= evidence[i, GAIN]:
+        return
+    evidence[i, GAIN] = gain - price
+    evidence[i, LEFT] = (total - gain) / (6.0 * k)
+    evidence[i, SHARE], evidence[i, SIGMA] = share, sigma
+    evidence[i, ONSET], evidence[i, KIND] = onset, kind
+    evidence[i, THRUST] = stuck

@@ -1,0 +1,106 @@
+"""Which thruster gives less than it is told, by the evidence of the last seconds."""
+
+import numpy as np
+
+from uvms_core.signals import Array, ThrusterHealth
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics import thruster_matrix
+from uvms_observer.health import evidence as columns
+from uvms_observer.health.evidence import weigh
+from uvms_observer.health.lagged import LaggedThrusts
+from uvms_observer.health.noise import NoiseLevel
+from uvms_observer.health.verdict import Verdict, decide
+
+WINDOW_S = 2.0
+"""Within it the disturbance is taken to be constant, and a fault has to be told from it."""
+ONSETS = 20
+"""Onsets tried in a window: a tenth of a second apart."""
+CONFIRM_S = 0.3
+"""The same verdict for so long is believed: a coincidence of noise is shorter."""
+PRIOR_SIGMA = 0.2
+"""Of a thruster's share that no evidence has been seen of: data sheets and batteries."""
+FORGET_S = 60.0
+"""What a thruster gave so long ago says little about it now."""
+SHARE_RANGE = (-0.2, 1.0)
+"""Share of the command that may be missing: a thruster may give a fifth more than the file says."""
+
+
+class ThrusterMonitor:
+    """Watches all thrusters of a vehicle.
+
+    Args:
+        vehicle: thruster matrix and lags.
+    """
+
+    def __init__(self, vehicle: Vehicle) -> None:
+        self._matrix = np.ascontiguousarray(thruster_matrix(vehicle))
+        self._lag = LaggedThrusts(vehicle)
+        self._noise = NoiseLevel()
+        self._m = self._matrix.shape[1]
+        self._lost = np.zeros(self._m)
+        self._sigma = np.full(self._m, PRIOR_SIGMA)
+        self._evidence = np.zeros((self._m, columns.COLUMNS))
+        self._dt = 0.0
+        self._start(0.0)
+
+    def _start(self, dt: float) -> None:
+        """Empty windows, for ticks of dt s."""
+        self._dt, self._size = dt, max(round(WINDOW_S / dt), 2) if dt > 0.0 else 2
+        self._residuals = np.zeros((self._size, 6))
+        self._thrusts = np.zeros((self._size, self._m))
+        self._count, self._same, self._candidate = 0, 0, Verdict()
+
+    def step(
+        self, dt: float, unexplained: Array, sigma: Array, thrust: Array, believed: Array
+    ) -> ThrusterHealth:
+        """What each thruster gives after another tick.
+
+        Args:
+            dt: since the last tick, s.
+            unexplained: wrench (6,) that the motion over this tick needed beyond model and
+                thrusters, N and N m, body frame.
+            sigma: its standard deviation (6,), as far as it is known; zeros where it is not.
+            thrust: commanded over this tick (m,), N.
+            believed: share (m,) with which the thrusters were counted in `unexplained`.
+        """
+        if abs(dt - self._dt) > 1e-9:
+            self._start(dt)
+        lagged = self._lag.step(dt, thrust)
+        whole = unexplained - self._matrix @ ((1.0 - believed) * lagged)
+        weights = self._noise.step(dt, whole + self._matrix @ (self._lost * lagged), sigma)
+        self._push(whole, lagged)
+        if self._count * 2 >= self._size:
+            self._judge(weights)
+        return ThrusterHealth(1.0 - self._shown(), self._sigma.copy())
+
+    def _push(self, residual: Array, thrust: Array) -> None:
+        self._residuals[:-1], self._thrusts[:-1] = self._residuals[1:], self._thrusts[1:]
+        self._residuals[-1], self._thrusts[-1] = residual, thrust
+        self._count = min(self._count + 1, self._size)
+
+    def _judge(self, weights: Array) -> None:
+        """Weigh the window, and believe a verdict that has stood for long enough."""
+        first = self._size - self._count
+        thrusts = self._thrusts[first:]
+        left = self._residuals[first:] + (self._lost * thrusts) @ self._matrix.T
+        low, high = SHARE_RANGE[0] - self._lost, SHARE_RANGE[1] - self._lost
+        step = max(self._size // ONSETS, 1)
+        weigh(left, thrusts, self._matrix, weights, low, high, step, self._evidence)
+        verdict = decide(self._evidence, self._lost)
+        stands = verdict.thruster == self._candidate.thruster and verdict.certain
+        self._same = self._same + 1 if stands else 0
+        self._candidate = verdict
+        if verdict.certain and self._same * self._dt >= CONFIRM_S:
+            self._believe(verdict)
+
+    def _believe(self, verdict: Verdict) -> None:
+        """Take a thruster's new share, and look at the rest from the fault's onset on."""
+        i = verdict.thruster
+        self._lost[i] = min(max(self._lost[i] + verdict.share, SHARE_RANGE[0]), SHARE_RANGE[1])
+        self._sigma[i] = max(verdict.sigma, 0.01)
+        self._count = max(self._count - verdict.onset, 1)
+        self._same, self._candidate = 0, Verdict()
+
+    def _shown(self) -> Array:
+        """Lost shares; that of a suspect is uncertain."""
+        return self._lost
