@@ -40,3 +40,8 @@ class AllocatorConfig(PluginConfig):
         default=False,
         description="keep each thrust within what the thruster's slew limit reaches in a tick",
     )
+    effectiveness: dict[str, float] = Field(
+        default_factory=dict,
+        description="share of its command that a thruster gives, by its name, as the user knows it"
+        " (0 dead, 1 whole, at most 1.2); it comes before what the observer estimates",
+    )

@@ -45,11 +45,14 @@ class ExternalWrenchObserver:
         self._model = model
         self._bandwidth = bandwidth
         self.wrench = np.zeros(6)
+        self.unexplained = np.zeros(6)
+        """Of the last interval alone, unfiltered."""
 
     def step(self, dt: float, before: Moment, now: Moment, thrust: Array) -> Array:
         """Estimate (6,) after an interval of dt s with this mean thruster wrench (6,)."""
-        missing = unexplained_wrench(self._model, dt, tuple(before), tuple(now), thrust)
-        self.wrench = self.wrench - np.expm1(-self._bandwidth * dt) * (missing - self.wrench)
+        self.unexplained = unexplained_wrench(self._model, dt, tuple(before), tuple(now), thrust)
+        share = -np.expm1(-self._bandwidth * dt)
+        self.wrench = self.wrench + share * (self.unexplained - self.wrench)
         return self.wrench
 
 

@@ -4,10 +4,12 @@ import numpy as np
 
 from uvms_core import checks
 from uvms_core.signals import (
+    Allocation,
     Array,
     DisturbanceBudget,
     JointStates,
     Odometry,
+    ThrusterHealth,
     Wrench,
     to_seconds,
 )
@@ -17,8 +19,11 @@ from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
 from uvms_observer.disturbance.tracking import TrackingFilter
+from uvms_observer.health import ThrusterMonitor
 
 NOT_MOVING = np.zeros(6)
+NOT_KNOWN = np.zeros(6)
+"""Standard deviation of the wrench that a single interval needs: it is worked out from the steps."""
 
 
 class DisturbanceObserver:
@@ -44,8 +49,15 @@ class DisturbanceObserver:
         self._angular = TrackingFilter(2, config.vehicle_jerk_rad_s3)
         self._lag = ThrustLag(vehicle)
         self._external = ExternalWrenchObserver(self._model, config.external_bandwidth_rad_s)
+        self._monitor = ThrusterMonitor(vehicle)
+        self._health = self._monitor.health
+        self._allocation: Allocation | None = None
         self._stamp: int | None = None
         self._before: Moment | None = None
+
+    def inform(self, allocation: Allocation | None) -> None:
+        """Thrusts of the tick before, one by one, and the shares that they were counted with."""
+        self._allocation = allocation
 
     def step(
         self, odometry: Odometry, joints: JointStates, achieved: Wrench | None
@@ -76,14 +88,30 @@ class DisturbanceObserver:
         coupling = coupling_wrench(self._model, now.nu, nu_dot, now.q, now.q_dot, q_ddot)
         held = coupling_wrench(self._model, now.nu, NOT_MOVING, now.q, now.q_dot, q_ddot)
         total = restoring + held + (external if self._config.external else 0.0)
-        budget = DisturbanceBudget(odometry.stamp, restoring, coupling, external)
+        budget = DisturbanceBudget(
+            odometry.stamp, restoring, coupling, external, thrusters=self._health
+        )
         return budget, Wrench(odometry.stamp, total)
 
     def _observe_external(self, dt: float, now: Moment, achieved: Wrench | None) -> Array:
         if achieved is None or self._before is None:
             return self._external.wrench
         thrust = self._lag.step(dt, achieved.wrench)
-        return self._external.step(dt, self._before, now, thrust)
+        external = self._external.step(dt, self._before, now, thrust)
+        self._health = self._watch(dt, self._external.unexplained)
+        return external
+
+    def _watch(self, dt: float, unexplained: Array) -> ThrusterHealth:
+        """What the thrusters give, where it is known what they were told."""
+        if self._allocation is None:
+            return self._health
+        return self._monitor.step(
+            dt,
+            unexplained,
+            NOT_KNOWN,
+            self._allocation.thrust,
+            self._allocation.effectiveness,
+        )
 
     def _accelerations(
         self, dt: float, odometry: Odometry, joints: JointStates

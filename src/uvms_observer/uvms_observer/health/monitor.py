@@ -41,6 +41,7 @@ class ThrusterMonitor:
         self._sigma = np.full(self._m, PRIOR_SIGMA)
         self._evidence = np.zeros((self._m, columns.COLUMNS))
         self._dt = 0.0
+        self.health = ThrusterHealth(np.ones(self._m), self._sigma.copy())
         self._start(0.0)
 
     def _start(self, dt: float) -> None:
@@ -61,12 +62,14 @@ class ThrusterMonitor:
                 thrusters, N and N m, body frame.
             sigma: its standard deviation (6,), as far as it is known; zeros where it is not.
             thrust: commanded over this tick (m,), N.
-            believed: share (m,) with which the thrusters were counted in `unexplained`.
+            believed: share (m,) with which the thrusters were counted in `unexplained`; (0,): all.
         """
         if abs(dt - self._dt) > 1e-9:
             self._start(dt)
         lagged = self._lag.step(dt, thrust)
-        whole = unexplained - self._matrix @ ((1.0 - believed) * lagged)
+        whole = unexplained
+        if believed.size:
+            whole = unexplained - self._matrix @ ((1.0 - believed) * lagged)
         weights = self._noise.step(dt, whole + self._matrix @ (self._lost * lagged), sigma)
         self._push(whole, lagged)
         if self._count * 2 >= self._size:
