@@ -12,7 +12,7 @@ from uvms_analysis.log.writer import LogWriter
 from uvms_bringup.ros.replay import Metronome
 from uvms_bringup.ros.schedule import TickOf, schedule
 from uvms_core import topics
-from uvms_core.signals import GpsSample, Wrench
+from uvms_core.signals import DisturbanceBudget, GpsSample, Wrench
 
 PERIOD, STEP = 50_000_000, 500_000_000
 
@@ -60,10 +60,9 @@ def test_the_controller_gets_all_inputs_of_a_tick(logs):
     ticks = schedule(logs[0], "controller", TickOf(logs[0], PERIOD, STEP))
     assert [tick.stamp for tick in ticks] == [k * PERIOD for k in range(41)]
     for number, tick in enumerate(ticks):
-        names = {"/clock", "/odometry", "/joint_states", "/disturbance"}
-        assert {name for name, _ in tick.inputs} == names | (
-            {"/reference"} if number % 10 == 0 else set()
-        )
+        names = {"/clock", "/odometry", "/joint_states", "/disturbance", "/disturbance/budget"}
+        names |= {"/allocation"} | ({"/reference"} if number % 10 == 0 else set())
+        assert {name for name, _ in tick.inputs} == names
         assert tick.outputs == {"/wrench_command": 1, "/joint_command": 1}
 
 
@@ -98,6 +97,8 @@ def test_lacking_outputs_are_named(tmp_path):
         signals = SignalWriter(log, (), ())
         signals.write(topics.CLOCK, 0)
         signals.write(topics.WRENCH_COMMAND, Wrench(0, np.zeros(6)))
+        none = np.zeros(6)
+        signals.write(topics.DISTURBANCE_BUDGET, DisturbanceBudget(0, none, none, none))
     run = RunLog.open(tmp_path / "a.mcap")
     with pytest.raises(LogError, match=r"has no output of thrust_allocator \(/thruster_command"):
         schedule(run, "thrust_allocator", TickOf(run, PERIOD, STEP))

@@ -87,8 +87,6 @@ ANYTHING = 1e12
 
 def bounds_of(vehicle: Vehicle, topic: Topic) -> Rule:
     """The rule of a topic; one of finite numbers alone where its signal is not ours."""
-    if topic.signal in _FOR_THE_LOG:
-        return Rule(())
     make = _RULES.get(topic.signal) if topic.signal is not None else None
     if topic.name in _BY_TOPIC:
         make = _BY_TOPIC[topic.name]
@@ -247,6 +245,23 @@ def _disturbance(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule((bound,))
 
 
+def _budget(vehicle: Vehicle, scale: Scale) -> Rule:
+    load = UNEXPLAINED * _wrench(scale.force + scale.weight, scale)
+    parts = ("restoring", "coupling", "external", "external_sigma")
+    return Rule([within(part, load, 6, "N or N m") for part in parts])
+
+
+def _allocation(vehicle: Vehicle, scale: Scale) -> Rule:
+    thrust, force = agility_of(vehicle).thrust, _wrench(scale.force, scale)
+    return Rule(
+        (
+            within("thrust", COMMANDED * thrust, thrust.size, "N"),
+            within("achieved", COMMANDED * force, 6, "N or N m"),
+            within("residual", ASKED * force, 6, "N or N m"),
+        )
+    )
+
+
 def _joint_command(vehicle: Vehicle, scale: Scale) -> Rule:
     slack = SUDDENLY * scale.effort
     bound = within(
@@ -337,9 +352,9 @@ _RULES: dict[Any, _Maker] = {
     signals.JointCommand: _joint_command,
     signals.ThrusterCommand: _thruster_command,
     signals.Reference: _reference,
+    signals.DisturbanceBudget: _budget,
+    signals.Allocation: _allocation,
 }
-_FOR_THE_LOG = (signals.Allocation, signals.DisturbanceBudget)
-"""No node reads them: that they are finite is enough."""
 _BY_TOPIC: dict[str, _Maker] = {
     "wrench_command": _command,
     "wrench_achieved": _achieved,

@@ -15,10 +15,10 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import build_model, coupling_wrench, restoring_wrench
+from uvms_dynamics.tracking import TrackingFilter
 from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
-from uvms_observer.disturbance.tracking import TrackingFilter
 from uvms_observer.health import ThrusterMonitor
 
 NOT_MOVING = np.zeros(6)

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.stats import chi2
 
-from uvms_observer.disturbance.tracking import TrackingFilter
+from uvms_dynamics.tracking import TrackingFilter
 
 DT = 0.05
 

@@ -16,7 +16,6 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_kernel
-from uvms_observer.navigation.arrays import transposed
 
 VARIANCE_FLOOR = 1e-18
 """Keeps the innovation invertible when perfect measurements are fed in."""
@@ -58,9 +57,9 @@ class TrackingFilter:
             self._x = self._start(measured, variances)
             return self._x
         if dt != self._dt:
-            self._dt, self._F = dt, _transition(self._order, dt)
-            self._Q = self._density * _walk(self._order, dt)
-        self._x, self._P = _follow(self._x, self._P, self._F, self._Q, measured, variances)
+            self._dt, self._F = dt, transition(self._order, dt)
+            self._Q = self._density * walk(self._order, dt)
+        self._x, self._P = follow(self._x, self._P, self._F, self._Q, measured, variances)
         return self._x
 
     def _start(self, measured: Array, variances: Array) -> Array:
@@ -73,20 +72,52 @@ class TrackingFilter:
 
 
 @exact_kernel
-def _follow(
+def follow(
     x: Array, P: Array, F: Array, Q: Array, measured: Array, variances: Array
 ) -> tuple[Array, Array]:
-    """The next estimate and its covariance, in the Joseph form."""
-    count, noise = variances.shape[0], np.diag(np.maximum(variances, VARIANCE_FLOOR))
-    x, P = F @ x, (F @ P) @ transposed(F) + Q
-    K = P[:, :count].copy() @ np.linalg.solve(P[:count, :count] + noise, np.eye(count))
-    left = np.eye(P.shape[0])
-    left[:, :count] -= K
-    P = (left @ P) @ transposed(left) + (K @ noise) @ transposed(K)
-    return x + K @ (measured - x[:count]), 0.5 * (P + P.T)
+    """The next estimate and its covariance.
+
+    The noises are independent, so that the measured derivatives are taken in one after the other,
+    each in the Joseph form: no matrix is solved for.
+    """
+    order, channels = x.shape
+    estimate, left = np.zeros((order, channels)), np.zeros((order, order))
+    for i in range(order):
+        for j in range(i, order):
+            for k in range(channels):
+                estimate[i, k] += F[i, j] * x[j, k]
+            for k in range(order):
+                left[i, k] += F[i, j] * P[j, k]
+    covariance = Q.copy()
+    for i in range(order):
+        for k in range(order):
+            for j in range(k, order):
+                covariance[i, k] += left[i, j] * F[k, j]
+    for m in range(measured.shape[0]):
+        _take_in(estimate, covariance, m, measured[m], max(variances[m], VARIANCE_FLOOR), left)
+    return estimate, covariance
 
 
-def _transition(order: int, dt: float) -> Array:
+@exact_kernel
+def _take_in(x: Array, P: Array, m: int, measured: Array, variance: float, scratch: Array) -> None:
+    """Correct x and P in place by a measurement of derivative m, in the Joseph form."""
+    order, total = x.shape[0], P[m, m] + variance
+    gain = P[:, m] / total
+    for k in range(x.shape[1]):
+        innovation = measured[k] - x[m, k]
+        for i in range(order):
+            x[i, k] += gain[i] * innovation
+    for i in range(order):
+        for j in range(order):
+            scratch[i, j] = P[i, j] - gain[i] * P[m, j]
+    for i in range(order):
+        for j in range(i, order):
+            P[i, j] = scratch[i, j] - scratch[i, m] * gain[j] + gain[i] * variance * gain[j]
+            P[j, i] = P[i, j]
+
+
+def transition(order: int, dt: float) -> Array:
+    """F (k, k) of value and derivatives over dt s."""
     F = np.zeros((order, order))
     for i in range(order):
         for j in range(i, order):
@@ -94,8 +125,8 @@ def _transition(order: int, dt: float) -> Array:
     return F
 
 
-def _walk(order: int, dt: float) -> Array:
-    """Covariance of a unit random walk of the last derivative, integrated over dt."""
+def walk(order: int, dt: float) -> Array:
+    """Covariance (k, k) of a unit random walk of the last derivative, integrated over dt."""
     Q = np.zeros((order, order))
     for i in range(order):
         for j in range(order):

@@ -1,0 +1,120 @@
+"""The joints at a control tick, from encoders that may be late.
+
+A joint state of stamp s that is used at the tick t is old by d = t - s. What is fed forward of it
+is then wrong by what the joints did within d, which acts as a delay in the loop. So it is carried
+to the tick with the joints' acceleration, which a tracking filter finds at the stamps:
+
+    q(t) = q(s) + q_dot(s) d + 1/2 q_ddot d^2,   q_dot(t) = q_dot(s) + q_ddot d.
+
+At d = 0 that is the measurement itself. What is left is the change of the acceleration, of the
+order of jerk d^2 / 2 in the rate. The error of q_ddot counts d times in the rate, so that a
+prediction is worth less the older the state is; `joint_age_limit` says where it ends.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_core import checks
+from uvms_core.signals import Array, JointStates, to_seconds
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.tracking import TrackingFilter
+
+JOINT_JERK_RAD_S3 = 0.05
+"""How much a joint's acceleration changes within a second: that of a swing by 90 degrees in 10 s
+has a jerk of up to 0.09 rad/s^3, that of a manipulation is below."""
+
+
+class JointMotion(NamedTuple):
+    """Angles, rates and accelerations of the joints at a tick."""
+
+    q: Array  # (n,) rad
+    q_dot: Array  # (n,) rad/s
+    q_ddot: Array  # (n,) rad/s^2
+
+
+class JointPrediction:
+    """Joints at the tick, from encoder samples by their stamps.
+
+    Args:
+        vehicle: noise of the encoders, lag of the thrusters.
+        jerk_rad_s3: how much a joint's acceleration changes within one second.
+        age_limit_s: greatest age of a joint state; None: `joint_age_limit` at the interval between
+            the last two ticks.
+    """
+
+    def __init__(
+        self,
+        vehicle: Vehicle,
+        jerk_rad_s3: float = JOINT_JERK_RAD_S3,
+        age_limit_s: float | None = None,
+    ) -> None:
+        self._vehicle = vehicle
+        self._filter = TrackingFilter(3, jerk_rad_s3)
+        self._variances = encoder_variances(vehicle)
+        self._limit = age_limit_s
+        self._limits: dict[int, float] = {}  # by interval, ns
+        self._stamp: int | None = None  # of the last sample
+        self._tick: int | None = None
+        self.filtered = np.zeros((3, vehicle.n_joints))
+        """Angles, rates and accelerations (3, n) of the tracking filter, at the last sample."""
+
+    def check(self, joints: JointStates, tick: int) -> None:
+        """SignalError where the joint state is newer than the tick, ns, or too old for it."""
+        if joints.stamp != tick:
+            checks.age("joint_states", joints.stamp, tick, self.age_limit_s(tick))
+
+    def age_limit_s(self, tick: int) -> float:
+        """Greatest age, s, at this tick, ns."""
+        if self._limit is not None:
+            return self._limit
+        if self._tick is None or tick <= self._tick:
+            return checks.MAX_AGE_S
+        interval = tick - self._tick
+        if interval not in self._limits:
+            self._limits[interval] = joint_age_limit(self._vehicle, to_seconds(interval))
+        return self._limits[interval]
+
+    def step(self, joints: JointStates, tick: int) -> JointMotion:
+        """The joints at a tick, ns; `check` comes before.
+
+        A sample that has been seen is not taken in again, only carried further.
+        """
+        if self._stamp is None or joints.stamp > self._stamp:
+            dt = 0.0 if self._stamp is None else to_seconds(joints.stamp - self._stamp)
+            measured = np.array((joints.position, joints.velocity))
+            self.filtered = self._filter.step(dt, measured, self._variances)
+            self._stamp = joints.stamp
+        self._tick = tick
+        q_ddot = self.filtered[2]
+        if joints.stamp == tick:
+            return JointMotion(joints.position, joints.velocity, q_ddot)
+        age = to_seconds(tick - joints.stamp)
+        q_dot = joints.velocity + age * q_ddot
+        return JointMotion(joints.position + 0.5 * age * (joints.velocity + q_dot), q_dot, q_ddot)
+
+
+def loop_delay(vehicle: Vehicle, period_s: float) -> float:
+    """Delay, s, between a state and the wrench that answers it: thruster lag, hold and computation.
+
+    The slowest thruster's time constant, half a period for the constant command (Franklin, Powell
+    and Workman, Digital Control, sec. 4.5) and one period from the measurement to the command.
+    """
+    lag = max((thruster.time_constant_s for thruster in vehicle.thrusters), default=0.0)
+    return lag + 1.5 * period_s
+
+
+def joint_age_limit(vehicle: Vehicle, period_s: float) -> float:
+    """Greatest age, s, of joint states in a loop of this period.
+
+    As much delay again as the loop has: bandwidths are at most a third of its inverse, so that the
+    phase falls by another third of a radian, which the margins stand.
+    """
+    return loop_delay(vehicle, period_s)
+
+
+def encoder_variances(vehicle: Vehicle) -> Array:
+    """Variances (2,) of angle and rate, rad^2 and (rad/s)^2; rounding to a step s adds s^2 / 12."""
+    encoders = vehicle.sensors.encoders
+    angle = encoders.noise_deg**2 + encoders.resolution_deg**2 / 12.0
+    return np.radians(1.0) ** 2 * np.array([angle, encoders.rate_noise_deg_s**2])

@@ -1,0 +1,87 @@
+"""Late joint states, carried to the tick: exact where the acceleration is constant."""
+
+import numpy as np
+import pytest
+
+from uvms_core.errors import SignalError
+from uvms_core.signals import JointStates, to_nanoseconds
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.joint_prediction import JointPrediction, joint_age_limit
+
+VEHICLE = load_vehicle()
+PERIOD = 0.05
+
+
+def swing(t):
+    """Angles, rates and accelerations (3, 4) of a quintic by 90 degrees in 10 s."""
+    s = np.clip(t / 10.0, 0.0, 1.0)
+    shape = [
+        s**3 * (10 - 15 * s + 6 * s * s),
+        30 * s * s * (1 - s) ** 2 / 10.0,
+        60 * s * (1 - s) * (1 - 2 * s) / 100.0,
+    ]
+    return np.outer(shape, np.radians([90.0, -45.0, 30.0, 10.0]))
+
+
+def sample(t, motion):
+    q, q_dot, _ = motion(t)
+    return JointStates(to_nanoseconds(t), q, q_dot, np.zeros(4))
+
+
+def late(motion, age, seconds=9.0):
+    """Largest errors of angle and rate, predicted and as they came."""
+    predict, errors = JointPrediction(VEHICLE), []
+    for t in np.arange(age, seconds, PERIOD):
+        joints = sample(t - age, motion)
+        found, true = predict.step(joints, to_nanoseconds(t)), motion(t)
+        if t > 3.0:
+            held = [
+                np.abs(joints.position - true[0]).max(),
+                np.abs(joints.velocity - true[1]).max(),
+            ]
+            carried = [np.abs(found.q - true[0]).max(), np.abs(found.q_dot - true[1]).max()]
+            errors.append(np.array([held, carried]))
+    return np.max(errors, axis=0)
+
+
+def test_a_sample_of_the_tick_is_used_as_it_is():
+    joints = sample(4.0, swing)
+    found = JointPrediction(VEHICLE).step(joints, joints.stamp)
+    assert found.q is joints.position
+    assert found.q_dot is joints.velocity
+
+
+def test_a_constant_acceleration_is_carried_exactly():
+    a = np.array([0.1, -0.05, 0.02, 0.0])
+    _, carried = late(lambda t: np.array([0.5 * a * t * t, a * t, a]), 0.1)
+    assert carried.max() < 1e-5
+
+
+@pytest.mark.parametrize("age", [0.05, 0.1, 0.2])
+def test_of_a_swing_a_small_part_of_the_error_is_left(age):
+    held, carried = late(swing, age)
+    assert (carried < 0.25 * held).all()
+
+
+def test_a_sample_that_came_before_is_carried_further():
+    predict = JointPrediction(VEHICLE)
+    for k in range(60):
+        predict.step(sample(PERIOD * k, swing), to_nanoseconds(PERIOD * k))
+    last, acceleration = sample(PERIOD * 59, swing), predict.filtered.copy()
+    found = predict.step(last, to_nanoseconds(PERIOD * 61))
+    np.testing.assert_array_equal(predict.filtered, acceleration)
+    np.testing.assert_allclose(found.q, swing(PERIOD * 61)[0], atol=2e-4)
+
+
+def test_older_than_the_loop_stands_is_an_error():
+    predict = JointPrediction(VEHICLE)
+    for k in range(3):
+        predict.step(sample(PERIOD * k, swing), to_nanoseconds(PERIOD * k))
+    limit = joint_age_limit(VEHICLE, PERIOD)
+    assert limit == pytest.approx(0.225)
+    joints = sample(2 * PERIOD, swing)
+    predict.check(joints, to_nanoseconds(3 * PERIOD))
+    with pytest.raises(SignalError, match=r"must lie within 0\.5 s"):
+        JointPrediction(VEHICLE).check(joints, to_nanoseconds(2 * PERIOD + 0.6))
+    with pytest.raises(SignalError, match=r"must lie within 0\.08 s"):
+        JointPrediction(VEHICLE, age_limit_s=0.08).check(joints, to_nanoseconds(2 * PERIOD + 0.1))

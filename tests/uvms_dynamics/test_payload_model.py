@@ -1,0 +1,67 @@
+"""The model with a payload against the plant's loaded vehicle, and the payload's forces."""
+
+import numpy as np
+import pytest
+
+from uvms_core.vehicle import load_vehicle
+from uvms_dynamics import build_model, forward_dynamics, inverse_dynamics, mass_matrix
+from uvms_dynamics.payload import payload_forces, with_payload
+from uvms_dynamics.simulation.events.load import Load, loaded
+
+VEHICLES = {name: load_vehicle(name) for name in ("reference_auv", "bluerov2_alpha5")}
+PLACE = np.array([0.04, -0.03, 0.1])
+RNG = np.random.default_rng(3)
+
+
+def motion(n, rng):
+    quaternion = rng.standard_normal(4)
+    return (
+        quaternion / np.linalg.norm(quaternion),
+        0.3 * rng.standard_normal(6),
+        rng.standard_normal(6),
+        *rng.standard_normal((3, n)),
+    )
+
+
+@pytest.mark.parametrize("name", VEHICLES)
+def test_it_is_the_plants_loaded_vehicle(name):
+    vehicle, rng = VEHICLES[name], np.random.default_rng(1)
+    volume, mass = 5e-4, 1.02
+    point = Load(mass_kg=mass, volume_m3=volume, at_m=tuple(PLACE), inertia_kg_m2=(1e-9,) * 3)
+    water = vehicle.environment.water_density_kg_m3 * volume
+    weight = (mass - water) * vehicle.environment.gravity_m_s2
+    model = with_payload(build_model(vehicle), mass + 0.5 * water, weight, PLACE)
+    plants = build_model(loaded(vehicle, point))
+    for _ in range(5):
+        state = motion(vehicle.n_joints, rng)
+        np.testing.assert_allclose(
+            inverse_dynamics(model, *state), inverse_dynamics(plants, *state), rtol=1e-9, atol=1e-7
+        )
+        np.testing.assert_allclose(
+            mass_matrix(model, state[3]), mass_matrix(plants, state[3]), atol=1e-8
+        )
+
+
+@pytest.mark.parametrize("name", VEHICLES)
+def test_its_forces_are_the_difference_that_it_makes(name):
+    vehicle, rng = VEHICLES[name], np.random.default_rng(2)
+    model, mass, weight = build_model(vehicle), 1.3, 4.2
+    for _ in range(5):
+        state = motion(vehicle.n_joints, rng)
+        difference = inverse_dynamics(model, *state) - inverse_dynamics(
+            with_payload(model, mass, weight, PLACE), *state
+        )
+        columns = payload_forces(model, *state, PLACE)
+        found = columns @ np.array([weight, *(weight * PLACE), mass])
+        np.testing.assert_allclose(found, difference, rtol=1e-9, atol=1e-8)
+
+
+def test_nothing_is_the_model_itself():
+    model = build_model(VEHICLES["reference_auv"])
+    np.testing.assert_array_equal(with_payload(model, 0.0, 0.0, PLACE), model)
+    state = motion(4, RNG)
+    heavy = with_payload(model, 2.0, 8.0, PLACE)
+    tau = inverse_dynamics(heavy, *state)
+    quaternion, nu, nu_dot, q, q_dot, q_ddot = state
+    found = forward_dynamics(heavy, quaternion, nu, q, q_dot, tau)
+    np.testing.assert_allclose(found, np.r_[nu_dot, q_ddot], atol=1e-8)
