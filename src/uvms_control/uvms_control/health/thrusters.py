@@ -10,7 +10,7 @@ from uvms_control.health.diagnosis import AXES, ThrusterDiagnosis
 from uvms_control.health.trial import TestThrust
 from uvms_control.vehicle_data import least_thrusts, thruster_limits
 from uvms_core.diagnostics import Trouble
-from uvms_core.signals import Allocation, DisturbanceBudget, ThrusterCommand
+from uvms_core.signals import Allocation, Array, DisturbanceBudget, ThrusterCommand
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import thruster_matrix
 
@@ -78,6 +78,11 @@ class Thrusters:
         return f"{', '.join(weak) or 'all thrusters are whole'}; authority that remains:" + "".join(
             f" {axis} {1e2 * share:.0f} %," for axis, share in self.authority_shares().items()
         ).rstrip(",")
+
+    @property
+    def authority(self) -> Array:
+        """Greatest force and moment along each axis alone (6,) with what is believed, N and N m."""
+        return self._diagnosis.remaining
 
     def authority_shares(self) -> dict[str, float]:
         """Share of its authority that each axis still has; those that never had any are left out."""
