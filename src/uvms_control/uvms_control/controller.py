@@ -7,7 +7,7 @@ import numpy as np
 from uvms_control.arm_law import ArmLaw
 from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
-from uvms_control.design.gains import VehicleGains, vehicle_gains
+from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
 from uvms_control.reference import ReferenceSample, sample_ahead, sample_reference
 from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
@@ -28,9 +28,6 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import build_model, hull_bias_wrench, mass_matrix
-
-ATTITUDE = slice(3, 5)
-"""Roll and pitch, along which the arm's weight acts."""
 
 
 class Controller:
@@ -63,15 +60,16 @@ class Controller:
             ControlSetupError: the loop would not be stable with gains of the configuration.
         """
         self._gains = vehicle_gains(self._vehicle, period, self._config.gains)
-        self._monitor = StabilityMonitor(self._gains.stiffness, self._gains.damping)
-        self._lead = to_nanoseconds(float(np.max(self._axes.lag[ATTITUDE])) + 0.5 * period)
+        whole = self._gains.stiffness + self._gains.righting
+        self._monitor = StabilityMonitor(whole, self._gains.damping)
+        self._lead = to_nanoseconds(thrust_delay(self._axes, period, self._config.gains))
 
     def reset(self) -> None:
         """Return to the state before the first step."""
+        self.stability: Stability | None = None
+        self._lacking = np.zeros(6)  # of the last wrench, beyond what the thrusters gave
         self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
-        self.stability: Stability | None = None
-        self._lacking = np.zeros(6)  # of the last wrench, beyond the thrusters' limits
         self._law.reset()
         self.arm.reset()
 
@@ -79,10 +77,10 @@ class Controller:
         """What explains the disturbance, and what the thrusters gave a tick ago."""
         self._budget = budget
         self.arm.inform(budget)
-        if allocation is None:
-            return
-        self._lacking = allocation.residual
-        if not np.array_equal(allocation.effectiveness, self._effectiveness):
+        self._lacking = np.zeros(6) if allocation is None else allocation.residual
+        if allocation is not None and not np.array_equal(
+            allocation.effectiveness, self._effectiveness
+        ):
             self._effectiveness = allocation.effectiveness
             self._axes = axes_of(self._vehicle, allocation.effectiveness)
 
@@ -105,39 +103,34 @@ class Controller:
         nu_dot, wrench = np.zeros(6), np.zeros(6)
         if self._config.enabled:
             inertia = np.ascontiguousarray(mass[:6, :6])
-            known = self._known(disturbance)
+            acts = np.zeros(6) if disturbance is None else disturbance.wrench
+            known = acts if self._config.observer else np.zeros(6)
             tracking, wrench = self._vehicle_wrench(
                 odometry, joints, inertia, known, desired, reference, dt
             )
-            self._judge(odometry, inertia, disturbance, tracking, wrench)
             nu_dot = tracking.acceleration
+            self.stability = self._judge(odometry, inertia, acts, tracking, wrench)
         effort = self.arm.step(odometry, joints, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
     def _judge(
         self,
         odometry: Odometry,
-        inertia: Array,
-        disturbance: Wrench | None,
+        mass: Array,
+        acts: Array,
         tracking: TrackingError,
         wrench: Array,
-    ) -> None:
-        """Stability of this tick, with the wrench as far as the thrusters give it."""
-        if self._monitor is None:
-            return
-        acts = np.zeros(6) if disturbance is None else disturbance.wrench
-        bias = hull_bias_wrench(self._model, odometry.nu)
-        needed = inertia @ tracking.acceleration + bias - acts
-        given = wrench - self._lacking
-        self.stability = self._monitor.at(
-            odometry.stamp, tracking.error, tracking.rate, inertia, needed, given
-        )
+    ) -> Stability | None:
+        """Lyapunov function and condition of eq. (27)-(29); None before the gains are known.
 
-    def _known(self, disturbance: Wrench | None) -> Array:
-        """F_dis (6,), what acts ON the vehicle; zeros where it is not fed forward."""
-        if disturbance is None or not self._config.observer:
-            return np.zeros(6)
-        return disturbance.wrench
+        acts (6,): what acts ON the vehicle at its actual attitude, whether it is fed forward or
+        not. What the thrusters lacked a tick ago counts as lacking now.
+        """
+        if self._monitor is None:
+            return None
+        needed = mass @ tracking.acceleration + hull_bias_wrench(self._model, odometry.nu) - acts
+        given = wrench - self._lacking
+        return self._monitor.at(odometry.stamp, tracking.error, tracking.rate, mass, needed, given)
 
     def _vehicle_wrench(
         self,
@@ -149,7 +142,7 @@ class Controller:
         reference: Reference,
         dt: float,
     ) -> tuple[TrackingError, Array]:
-        """Errors with the reference's acceleration, and the wrench (6,)."""
+        """Errors with the reference acceleration, and the wrench (6,)."""
         if self._gains is None and dt > 0.0:
             self.prepare(dt)
         ahead = sample_ahead(reference, odometry.stamp, self._lead)

@@ -1,13 +1,19 @@
 """Control law `paper`: the vehicle by eq. (22) as printed, the arm by eq. (19)."""
 
+from dataclasses import replace
+
 from uvms_control.config import ControlConfig
 from uvms_control.controller import Controller
+from uvms_control.design.conditions import check_slopes
+from uvms_control.design.vehicle_axes import Timing, vehicle_axes
 from uvms_control.reference import ReferenceSample
 from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
 from uvms_core.signals import Array, JointStates, Odometry, Reference
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.plausible.stability import postures
+from uvms_core.vehicle.postures import STOWED
 
 
 class PaperController(Controller):
@@ -21,10 +27,23 @@ class PaperController(Controller):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         super().__init__(vehicle, config)
         self.vehicle = VehicleController(self._model, config.vehicle)
-        self._monitor = StabilityMonitor(self.vehicle.law.stiffness, self.vehicle.law.damping)
 
     def prepare(self, period: float) -> None:
-        """Nothing: the gains are those of the configuration."""
+        """Check the slopes near the reference for a control period in s, with the arm stowed.
+
+        The law cancels righting moment and drag, so that they are not in its loop.
+
+        Raises:
+            ControlSetupError: the loop would not be stable with them.
+        """
+        law, stowed = self.vehicle.law, dict(postures(self._vehicle))[STOWED]
+        axes = [
+            each and replace(each, righting=0.0, drag=0.0)
+            for each in vehicle_axes(self._vehicle, stowed, Timing(period))
+        ]
+        check_slopes("control.vehicle", axes, list(law.stiffness), list(law.damping))
+        controlled = self._axes.is_controlled
+        self._monitor = StabilityMonitor(law.stiffness * controlled, law.damping * controlled)
 
     def reset(self) -> None:
         """Return to the state before the first step."""
@@ -42,6 +61,6 @@ class PaperController(Controller):
         reference: Reference,
         dt: float,
     ) -> tuple[TrackingError, Array]:
-        """Errors with the reference's acceleration, and the wrench (6,)."""
+        """Errors with the reference acceleration, and the wrench (6,)."""
         tracking = tracking_error(odometry, desired)
         return tracking, self.vehicle.step(odometry, mass, known, tracking, dt)

@@ -37,12 +37,9 @@ def _value(axes: Axes, found: Series) -> None:
 def _rate(axes: Axes, found: Series) -> None:
     """What the law's model says of V, and what V does, disturbances that nobody knows included."""
     rate, happened = found.lyapunov_rate, np.gradient(found.lyapunov, found.time)
-    grey = {"color": "#aaaaaa", "linewidth": 0.6, "label": "as it happens"}
-    axes.plot(style.thin(found.time), style.thin(happened), **grey)
-    color = style.COLORS[1]
-    axes.plot(
-        style.thin(found.time), style.thin(rate), color=color, linewidth=0.9, label="by model"
-    )
+    time = style.thin(found.time)
+    axes.plot(time, style.thin(happened), color="#aaaaaa", linewidth=0.6, label="as it happens")
+    axes.plot(time, style.thin(rate), color=style.COLORS[1], linewidth=0.9, label="by model")
     axes.axhline(0.0, **style.REFERENCE)
     falls = 100.0 * np.mean(rate <= 0.0)
     axes.set_title(f"its rate   by the model V does not grow at {falls:.1f} % of the ticks")

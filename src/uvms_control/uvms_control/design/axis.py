@@ -109,7 +109,8 @@ def loop_matrices(axis: Axis, gains: AxisGains, extra_delay: float = 0.0) -> Loo
     v_hat = v + axis.rate_noise * np.eye(1, size + 2, size + 1)[0]
 
     missing = (m / h + 0.5 * d) * v_hat + 0.5 * c * x_hat + memory
-    w_hat = w - np.expm1(-gains.observer * h) * (missing - w)
+    gain = -np.expm1(-gains.observer * h)
+    w_hat = w + gain * (missing - w) if gain > 0.0 else 0.0 * w
     u = -m * (gains.stiffness * x_hat + gains.damping * v_hat) - w_hat
     a = np.exp(-h / axis.lag) if axis.lag > 0.0 else 0.0
     p = u + axis.lag_compensated * a / (1.0 - a) * (u - f_hat)

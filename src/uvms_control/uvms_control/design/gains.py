@@ -10,14 +10,18 @@ from math import sqrt
 
 import numpy as np
 
+from uvms_control.controlled_axes import AXES, ControlledAxes
 from uvms_control.design.axis import Axis, AxisGains
 from uvms_control.design.bandwidth import AxisDesign, Limits, largest_bandwidth
+from uvms_control.design.conditions import require_stable
 from uvms_control.design.vehicle_axes import Timing, vehicle_axes
 from uvms_control.vehicle_config import GainConfig
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.plausible.stability import postures
 
+ATTITUDE = slice(3, 5)
+"""Roll and pitch, along which the arm's weight acts."""
 ENGAGES_IN = 2.0
 """The feedback comes up within so many times 1 / bandwidth."""
 
@@ -29,12 +33,14 @@ class VehicleGains:
     Attributes:
         stiffness: (6,) P, acceleration per error, 1/s^2.
         damping: (6,) D, acceleration per rate of the error, 1/s.
+        righting: (6,) c / m that the hull adds to the stiffness, 1/s^2.
         observer: (6,) K, bandwidth of the external wrench's estimate that goes with them, rad/s.
         authority_share: of an axis's thrust that the feedback may ask for.
     """
 
     stiffness: Array
     damping: Array
+    righting: Array
     observer: Array
     authority_share: float
 
@@ -48,15 +54,30 @@ class VehicleGains:
 
 
 def vehicle_gains(vehicle: Vehicle, period: float, config: GainConfig) -> VehicleGains:
-    """The gains for a control period in s."""
+    """The gains for a control period in s.
+
+    Raises:
+        ControlSetupError: the loop would not be stable with a bandwidth of the configuration.
+    """
     designs = axis_designs(vehicle, period, config)
     gains = [AxisGains(0.0, 0.0) if each is None else each.gains for each in designs]
     return VehicleGains(
         np.array([each.stiffness for each in gains]),
         np.array([each.damping for each in gains]),
+        np.array([0.0 if each is None else max(each.axis.hull_stiffness, 0.0) for each in designs]),
         np.array([each.observer for each in gains]),
         config.authority_share,
     )
+
+
+def thrust_delay(axes: ControlledAxes, period: float, config: GainConfig) -> float:
+    """How long after a tick the thrust of its command comes on average, s, in roll and pitch.
+
+    What the allocator leaves of the lag, and half a period, as the command is held; lag that it
+    makes up for is made up for at the end of the period, which is another half.
+    """
+    share, lag = config.lag_compensation, float(np.max(axes.lag[ATTITUDE]))
+    return (1.0 - share) * lag + 0.5 * (1.0 + share) * period
 
 
 def axis_designs(
@@ -64,7 +85,8 @@ def axis_designs(
 ) -> tuple[AxisDesign | None, ...]:
     """The design of each axis, in the posture that allows least; None: left to the hull."""
     limits = Limits(delay_periods=config.delay_margin_periods, noise_share=config.noise_share)
-    by_posture = [vehicle_axes(vehicle, q, Timing(period)) for _, q in postures(vehicle)]
+    timing = Timing(period, lag_compensated=config.lag_compensation)
+    by_posture = [vehicle_axes(vehicle, q, timing) for _, q in postures(vehicle)]
     return tuple(
         _least([_design(each, k, limits, config) for each in axes])
         for k, axes in enumerate(zip(*by_posture, strict=True))
@@ -83,6 +105,16 @@ def _design(axis: Axis | None, k: int, limits: Limits, config: GainConfig) -> Ax
         return largest_bandwidth(axis, limits)
     bandwidth = config.bandwidth_rad_s[k]
     ratio = 1.0 if config.damping_ratio is None else config.damping_ratio[k]
-    damping = 2.0 * ratio * sqrt(max(bandwidth**2 + axis.hull_stiffness, 0.0))
-    gains = AxisGains(bandwidth**2, damping, limits.observer * bandwidth)
-    return AxisDesign(axis, bandwidth, ratio, gains, "asked for")
+
+    def gains_at(value: float, zeta: float) -> AxisGains:
+        damping = 2.0 * zeta * sqrt(max(value**2 + axis.hull_stiffness, 0.0))
+        return AxisGains(value**2, damping, limits.observer * value)
+
+    # With a usual damping ratio first: what only a large one breaks is not the bandwidth's fault.
+    usual = min(ratio, 1.0)
+    name = f"control.gains.{{}} of {AXES[k]}".format
+    require_stable(
+        name("bandwidth_rad_s"), bandwidth, " rad/s", axis, lambda value: gains_at(value, usual)
+    )
+    require_stable(name("damping_ratio"), ratio, "", axis, lambda value: gains_at(bandwidth, value))
+    return AxisDesign(axis, bandwidth, ratio, gains_at(bandwidth, ratio), "asked for")

@@ -58,7 +58,7 @@ def loop_margins(axis: Axis, gains: AxisGains) -> Margins:
         phase_margin=_phase_margin(loop) if stable else 0.0,
         bandwidth=_bandwidth(loop, axis.period),
         noise_rms=rms,
-        noise_share=rms / axis.authority if rms else 0.0,
+        noise_share=rms / axis.authority if stable else np.inf,
     )
 
 
