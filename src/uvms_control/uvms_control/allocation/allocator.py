@@ -247,9 +247,7 @@ class ThrustAllocator:
         mark_saturated(thrust, lower, upper, self._margin, self._reverses, self._dead, saturated)
         residual = tau - given
         command = ThrusterCommand(stamp, thrust)
-        return command, Allocation(
-            stamp, thrust, achieved, residual, saturated, self.effectiveness
-        )
+        return command, Allocation(stamp, thrust, achieved, residual, saturated, self.effectiveness)
 
     def _bounds(self, stamp: int) -> tuple[Array, Array]:
         """Bounds (m,) N of this tick: the limits, and what the slew limit reaches from the last."""

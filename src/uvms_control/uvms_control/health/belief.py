@@ -4,9 +4,10 @@ from collections.abc import Mapping, Sequence
 from typing import Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_control.errors import ControlSetupError
-from uvms_core.signals import Array, ThrusterHealth
+from uvms_core.signals import ThrusterHealth
 
 LEAST_SHARE, GREATEST_SHARE = 0.0, 1.2
 """Share of its command that a thruster may be said to give: 0 dead, 1 whole; a fifth more than the
@@ -94,9 +95,10 @@ class ThrusterBelief:
         return tuple(name for name, is_open in zip(self.names, open_, strict=True) if is_open)
 
     @property
-    def untried(self) -> Array:
+    def untried(self) -> NDArray[np.bool_]:
         """Thrusters (m,) bool that are taken to be dead by the estimate alone: not used, so that
-        nothing would be seen of their recovery."""
+        nothing would be seen of their recovery.
+        """
         return np.isnan(self._said) & (self._estimate == 0.0)
 
 

@@ -4,7 +4,6 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
-
 from uvms_control.health.belief import ThrusterBelief
 from uvms_control.health.diagnosis import AXES, ThrusterDiagnosis
 from uvms_control.health.trial import TestThrust
@@ -64,20 +63,27 @@ class Thrusters:
         )
 
     def say(self, shares: Mapping[str, float]) -> str:
-        """Take the user's word by thruster's name; NaN takes one back. Returns what follows.
+        """Take the user's word by thruster's name; NaN takes one back. Returns the `summary`.
 
         Raises:
             ControlSetupError: a name or a share that cannot be.
         """
         self.belief.say(shares)
         self._diagnosis.follow_belief()
+        return self.summary
+
+    @property
+    def summary(self) -> str:
+        """What is believed, and the authority that remains, in words."""
         weak = [
             f"{name} gives {share:.0%} ({self.belief.source(name)})"
             for name, share in self.belief.weak.items()
         ]
-        return f"{', '.join(weak) or 'all thrusters are whole'}; authority that remains:" + "".join(
-            f" {axis} {1e2 * share:.0f} %," for axis, share in self.authority_shares().items()
-        ).rstrip(",")
+        left = [f"{axis} {share:.0%}" for axis, share in self.authority_shares().items()]
+        return (
+            f"{', '.join(weak) or 'all thrusters are whole'};"
+            f" authority that remains: {', '.join(left)}"
+        )
 
     @property
     def authority(self) -> Array:

@@ -25,6 +25,7 @@ class ThrustAllocatorNode(PartNode):
 
     role = topics.THRUST_ALLOCATOR
     configurations = (AllocatorConfig,)
+    part: AllocatorPart
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
@@ -43,8 +44,8 @@ class ThrustAllocatorNode(PartNode):
     ) -> SetThrusterHealth.Response:
         thrusters = self.part.thrusters
         try:
-            response.message = self._say(request.thruster_names, request.effectiveness)
-            response.success = True
+            self._say(request.thruster_names, request.effectiveness)
+            response.success, response.message = True, thrusters.summary
         except ControlSetupError as fault:
             response.success, response.message = False, str(fault)
         response.all_thruster_names = list(thrusters.belief.names)
@@ -55,10 +56,8 @@ class ThrustAllocatorNode(PartNode):
     def _take_health(self, message: ThrusterHealth) -> None:
         self.guard(lambda: self._say(message.thruster_names, message.effectiveness))
 
-    def _say(self, names: Sequence[str], shares: Sequence[float]) -> str:
-        text = self.part.thrusters.say(_by_name(names, shares))
-        self.get_logger().info(text)
-        return text
+    def _say(self, names: Sequence[str], shares: Sequence[float]) -> None:
+        self.get_logger().info(self.part.thrusters.say(_by_name(names, shares)))
 
 
 def _by_name(names: Sequence[str], shares: Sequence[float]) -> dict[str, float]:

@@ -53,7 +53,11 @@ def decide(evidence: Array, lost: Array) -> Verdict:
     alone = gain - others >= max(MARGIN, MARGIN_SHARE * gain)
     certain = alone and gain >= CERTAIN
     return Verdict(
-        i, bool(certain), float(share), float(evidence[i, columns.SIGMA]), int(evidence[i, columns.ONSET])
+        i,
+        bool(certain),
+        float(share),
+        float(evidence[i, columns.SIGMA]),
+        int(evidence[i, columns.ONSET]),
     )
 
 
