@@ -91,7 +91,7 @@ class ThrusterDiagnosis:
         if self._asked:
             yield Trouble(ERROR, "the vehicle cannot hold it: abort the task")
         for name in self._belief.suspected:
-            yield Trouble(*self._suspicion(name))
+            yield Trouble(WARN, self._suspicion(name))
         if (axes := self._missing.flags).any():
             text = f"{_axes(axes)}: not achieved for more than {MISSING_S:g} s"
             yield Trouble(ERROR, text)
@@ -99,14 +99,14 @@ class ThrusterDiagnosis:
             names = [name for name, one in zip(self._belief.names, flags, strict=True) if one]
             yield Trouble(WARN, f"{', '.join(names)} at the limit for more than {SATURATED_S:g} s")
 
-    def _suspicion(self, name: str) -> tuple[int, str]:
-        """What it would mean if a suspect were dead."""
+    def _suspicion(self, name: str) -> str:
+        """Who is suspected, and what it would mean if the thruster were dead."""
         shares = self._belief.effectiveness.copy()
         shares[self._belief.names.index(name)] = 0.0
         remaining = remaining_authority(self._matrix, self._limits, shares)
-        if (axes := lost_axes(remaining, self.nominal) & ~self.lost).any():
-            return ERROR, f"{name} does not seem to answer: {_axes(axes)} would be lost"
-        return WARN, f"{name} does not seem to answer"
+        axes = lost_axes(remaining, self.nominal) & ~self.lost
+        means = f": without it {_axes(axes)} would be lost" if axes.any() else ""
+        return f"{name} is suspected to give less than its command{means}"
 
     def status(self) -> dict[str, float]:
         """Shares of the thrusters and of the authority that remains, by name."""

@@ -91,7 +91,7 @@ class Thrusters:
         return self._diagnosis.remaining
 
     def authority_shares(self) -> dict[str, float]:
-        """Share of its authority that each axis still has; those that never had any are left out."""
+        """Share of its authority that each axis has left; those that never had any are left out."""
         nominal, remaining = self._diagnosis.nominal, self._diagnosis.remaining
         return {
             axis: float(remaining[i] / nominal[i])

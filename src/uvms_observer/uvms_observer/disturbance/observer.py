@@ -23,7 +23,7 @@ from uvms_observer.health import ThrusterMonitor
 
 NOT_MOVING = np.zeros(6)
 NOT_KNOWN = np.zeros(6)
-"""Standard deviation of the wrench that a single interval needs: it is worked out from the steps."""
+"""Standard deviation of the wrench of a single interval: it is worked out from the steps."""
 
 
 class DisturbanceObserver:

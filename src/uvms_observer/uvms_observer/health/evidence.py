@@ -19,15 +19,17 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 NONE, WEAK, STUCK = 0, 1, 2
 """What is found: nothing, a share that is left, a thrust that does not follow."""
 
-COLUMNS = 9
-GAIN, LEFT, SHARE, SIGMA, ONSET, KIND, THRUST, INFORMATION, TOTAL = range(COLUMNS)
+COLUMNS = 11
+GAIN, LEFT, SHARE, SIGMA, ONSET, KIND, THRUST, INFORMATION, TOTAL, BESIDES, FOLLOWED = range(COLUMNS)
 """Columns of the evidence: fall of chi^2 against no fault; chi^2 per value that is left; lost share
-and its std; tick of the onset in the window; WEAK or STUCK; the stuck thrust, N; what the whole window
-tells of the share, 1 / variance; chi^2 per value without any fault."""
+and its std; tick of the onset in the window; WEAK or STUCK; the stuck thrust, N; what the whole
+window tells of the share, 1 / variance; chi^2 per value without any fault; share of the evidence
+that is not of the channel with the most; and by how much chi^2 would be smaller if it were the other
+way round: a disturbance that the thrust follows."""
 
 
 @exact_kernel
-def weigh(residual, thrust, columns, weights, low, high, step, evidence):
+def weigh(residual, thrust, columns, weights, low, high, step, lags, evidence):
     """Fill `evidence` (m, COLUMNS) from a window.
 
     Args:
@@ -37,6 +39,7 @@ def weigh(residual, thrust, columns, weights, low, high, step, evidence):
         weights: 1 / sigma^2 (6,).
         low, high: bounds (m,) of the lost shares.
         step: onsets tried are this many ticks apart.
+        lags: least and greatest time, in ticks, by which thrust follows a disturbance.
         evidence: (m, COLUMNS), written.
     """
     k, m = thrust.shape
@@ -50,15 +53,18 @@ def weigh(residual, thrust, columns, weights, low, high, step, evidence):
             total += weights[c] * (residual[t, c] - mean) ** 2
     along = np.empty(k)
     for i in range(m):
-        scale = 0.0
+        scale = most = 0.0
         for c in range(6):
-            scale += weights[c] * columns[c, i] ** 2
+            one = weights[c] * columns[c, i] ** 2
+            scale, most = scale + one, max(most, one)
         for t in range(k):
             along[t] = 0.0
             for c in range(6):
                 along[t] += weights[c] * columns[c, i] * residual[t, c]
             along[t] /= scale
         _weigh_one(along, thrust, i, scale, low[i], high[i], step, total, evidence)
+        evidence[i, BESIDES] = 1.0 - most / scale
+        evidence[i, FOLLOWED] = _followed(along, thrust, i, scale, lags, evidence)
 
 
 @exact_inner
@@ -94,6 +100,36 @@ def _weigh_one(along, thrust, i, scale, low, high, step, total, evidence):
             stuck = (sy + high * tb) / bb
             gain = -scale * (high * high * tt + 2.0 * high * ty - bb * stuck * stuck)
             _keep(evidence, i, gain, total, k, high, 1.0 / np.sqrt(scale * bb), t, STUCK, stuck)
+
+
+@exact_inner
+def _followed(along, thrust, i, scale, lags, evidence):
+    """Fall of chi^2 along b_i from the best fault to the best r(t - lag) = d - b_i T_i(t).
+
+    A controller answers a disturbance with the opposite thrust, a little later. What looks like
+    lost thrust is then ahead of it, whereas a fault is in step with the thrust.
+    """
+    if evidence[i, KIND] == NONE:
+        return 0.0
+    k, onset, stuck = along.shape[0], int(evidence[i, ONSET]), evidence[i, THRUST]
+    share, best = evidence[i, SHARE], -np.inf
+    for lag in range(lags[0], min(lags[1], k // 2) + 1):
+        fault = _spread(along, thrust, i, 0, lag, share, onset, stuck)
+        follows = _spread(along, thrust, i, lag, lag, 1.0, 0, 0.0)
+        best = max(best, scale * (fault - follows))
+    return best
+
+
+@exact_inner
+def _spread(along, thrust, i, lag, first, share, onset, stuck):
+    """Squared sum about its mean of r(t - lag) + share (T(t) - stuck), from tick `first` on."""
+    total = squares = 0.0
+    for t in range(first, along.shape[0]):
+        value = along[t - lag]
+        if t >= onset:
+            value += share * (thrust[t, i] - stuck)
+        total, squares = total + value, squares + value * value
+    return squares - total * total / (along.shape[0] - first)
 
 
 @exact_inner

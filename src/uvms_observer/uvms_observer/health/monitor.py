@@ -17,10 +17,11 @@ ONSETS = 20
 """Onsets tried in a window: a tenth of a second apart."""
 CONFIRM_S = 0.3
 """The same verdict for so long is believed: a coincidence of noise is shorter."""
+FOLLOWS_S = (0.4, 1.5)
+"""How soon and how late a controller answers a disturbance, s: two ticks, the estimate of the
+disturbance (a bandwidth of some rad/s) and the lag of the thruster come first."""
 PRIOR_SIGMA = 0.2
 """Of a thruster's share that no evidence has been seen of: data sheets and batteries."""
-FORGET_S = 60.0
-"""What a thruster gave so long ago says little about it now."""
 SHARE_RANGE = (-0.2, 1.0)
 """Share of the command that may be missing: a thruster may give a fifth more than the file says."""
 
@@ -30,6 +31,9 @@ class ThrusterMonitor:
 
     Args:
         vehicle: thruster matrix and lags.
+
+    Attributes:
+        health: as the last step found it; all whole before.
     """
 
     def __init__(self, vehicle: Vehicle) -> None:
@@ -49,7 +53,12 @@ class ThrusterMonitor:
         self._dt, self._size = dt, max(round(WINDOW_S / dt), 2) if dt > 0.0 else 2
         self._residuals = np.zeros((self._size, 6))
         self._thrusts = np.zeros((self._size, self._m))
-        self._count, self._same, self._candidate = 0, 0, Verdict()
+        self._count = 0
+        self._doubt()
+
+    def _doubt(self) -> None:
+        """Nobody is suspected."""
+        self._same, self._certain, self._candidate = 0, 0, Verdict()
 
     def step(
         self, dt: float, unexplained: Array, sigma: Array, thrust: Array, believed: Array
@@ -74,7 +83,8 @@ class ThrusterMonitor:
         self._push(whole, lagged)
         if self._count * 2 >= self._size:
             self._judge(weights)
-        return ThrusterHealth(1.0 - self._shown(), self._sigma.copy())
+        self.health = self._state()
+        return self.health
 
     def _push(self, residual: Array, thrust: Array) -> None:
         self._residuals[:-1], self._thrusts[:-1] = self._residuals[1:], self._thrusts[1:]
@@ -88,12 +98,14 @@ class ThrusterMonitor:
         left = self._residuals[first:] + (self._lost * thrusts) @ self._matrix.T
         low, high = SHARE_RANGE[0] - self._lost, SHARE_RANGE[1] - self._lost
         step = max(self._size // ONSETS, 1)
-        weigh(left, thrusts, self._matrix, weights, low, high, step, self._evidence)
+        lags = (max(round(FOLLOWS_S[0] / self._dt), 1), max(round(FOLLOWS_S[1] / self._dt), 1))
+        weigh(left, thrusts, self._matrix, weights, low, high, step, lags, self._evidence)
         verdict = decide(self._evidence, self._lost)
-        stands = verdict.thruster == self._candidate.thruster and verdict.certain
+        stands = verdict.thruster >= 0 and verdict.thruster == self._candidate.thruster
         self._same = self._same + 1 if stands else 0
+        self._certain = self._certain + 1 if stands and verdict.certain else 0
         self._candidate = verdict
-        if verdict.certain and self._same * self._dt >= CONFIRM_S:
+        if verdict.certain and self._certain * self._dt >= CONFIRM_S:
             self._believe(verdict)
 
     def _believe(self, verdict: Verdict) -> None:
@@ -102,8 +114,13 @@ class ThrusterMonitor:
         self._lost[i] = min(max(self._lost[i] + verdict.share, SHARE_RANGE[0]), SHARE_RANGE[1])
         self._sigma[i] = max(verdict.sigma, 0.01)
         self._count = max(self._count - verdict.onset, 1)
-        self._same, self._candidate = 0, Verdict()
+        self._doubt()
 
-    def _shown(self) -> Array:
-        """Lost shares; that of a suspect is uncertain."""
-        return self._lost
+    def _state(self) -> ThrusterHealth:
+        """Shares and their std; a suspect's loss is as uncertain as it is large."""
+        left, sigma = 1.0 - self._lost, self._sigma.copy()
+        if self._same * self._dt >= CONFIRM_S:
+            i, share = self._candidate.thruster, self._candidate.share
+            left[i] = max(left[i] - share, 1.0 - SHARE_RANGE[1])
+            sigma[i] = max(abs(share), sigma[i])
+        return ThrusterHealth(left, sigma)

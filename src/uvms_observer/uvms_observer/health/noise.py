@@ -7,21 +7,22 @@ from uvms_core.signals import Array
 FORGET_S = 10.0
 """The noise of sensors changes slowly, if at all; a gust is over sooner."""
 CLIP = 4.0
-"""Squared steps count up to so many variances: a jump of the disturbance is not noise."""
+"""Squared differences count up to so many variances: a jump of the disturbance is not noise."""
 FLOOR = 1e-9
 """N or N m; keeps the weights finite where a test feeds perfect signals."""
 
 
 class NoiseLevel:
-    """Standard deviation of each channel (6,), by the steps between neighbouring ticks.
+    """Standard deviation of each channel (6,), by the second differences of neighbouring ticks.
 
-    Half the mean square of the steps is the variance of white noise; for the noise of a velocity
-    that was divided by dt, which alternates, it is too large by half, to the safe side.
+    A sixth of their mean square is the variance of white noise, and of a wave or a ramp next to
+    nothing; for the noise of a velocity that was divided by dt, which alternates, it is too large
+    by two thirds, to the safe side.
     """
 
     def __init__(self) -> None:
         self._variance = np.zeros(6)
-        self._before: Array | None = None
+        self._before: list[Array] = []
         self._count = 0
 
     def step(self, dt: float, wrench: Array, sigma: Array) -> Array:
@@ -29,9 +30,10 @@ class NoiseLevel:
 
         `sigma` (6,) is what the observer states; the larger of both counts.
         """
-        if self._before is not None:
-            self._take(dt, 0.5 * (wrench - self._before) ** 2)
-        self._before = wrench
+        if len(self._before) == 2:
+            first, second = self._before
+            self._take(dt, (wrench - 2.0 * second + first) ** 2 / 6.0)
+        self._before = [*self._before[-1:], wrench]
         return 1.0 / np.maximum(np.maximum(self._variance, sigma * sigma), FLOOR**2)
 
     def _take(self, dt: float, square: Array) -> None:

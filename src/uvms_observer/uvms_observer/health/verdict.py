@@ -7,7 +7,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_observer.health import evidence as columns
 
-SUSPECTED, CERTAIN = 30.0, 60.0
+SUSPECTED, CERTAIN = 40.0, 60.0
 """Fall of chi^2 from which a fault is suspected, and certain. By chance one of some 20 onsets of
 some 10 thrusters reaches 22 once in a thousand windows that do not overlap; the rest is for noise
 that is not white."""
@@ -19,16 +19,20 @@ MODEL_NOISE = 0.15
 MARGIN, MARGIN_SHARE = 20.0, 0.08
 """By how much, of chi^2, and by what share of its own fall a thruster must be a better explanation
 than any other."""
+IN_STEP = 20.0
+"""By how much of chi^2 a fault must explain more than a disturbance that the thrust follows."""
 LEAST = 0.25
 """Share from which a loss, or a change of one, is named. The authority of a healthy thruster is
 known to a fifth."""
+LEAST_CHANGE = 0.05
+"""Share by which what is believed of a weak thruster is set right."""
 
 
 @dataclass(frozen=True)
 class Verdict:
     """What a window says: the thruster, the share that it lost beyond what is believed, its std.
 
-    `thruster` is -1 where nothing stands out; `onset` is the tick in the window.
+    `thruster` is -1 where none stands out, and a mere suspect where it is not `certain`; `onset` is the tick in the window.
     """
 
     thruster: int = -1
@@ -42,16 +46,19 @@ NOTHING = Verdict()
 
 
 def decide(evidence: Array, lost: Array) -> Verdict:
-    """The verdict on the evidence (m, COLUMNS) of a window."""
+    """The verdict on the evidence (m, COLUMNS) of a window, with shares (m,) that are known lost."""
     gains = evidence[:, columns.GAIN]
     i = int(gains.argmax())
     gain = gains[i]
     share = evidence[i, columns.SHARE]
-    if gain < SUSPECTED or abs(share) < LEAST or not _explains(evidence[i]):
+    least = LEAST if lost[i] == 0.0 else LEAST_CHANGE
+    if gain < SUSPECTED or abs(share) < least or not _explains(evidence[i]):
         return NOTHING
     others = np.delete(gains, i).max(initial=0.0)
     alone = gain - others >= max(MARGIN, MARGIN_SHARE * gain)
-    certain = alone and gain >= CERTAIN
+    if not alone or not _is_in_step(evidence[i]):
+        return NOTHING
+    certain = gain >= CERTAIN
     return Verdict(
         i,
         bool(certain),
@@ -59,6 +66,17 @@ def decide(evidence: Array, lost: Array) -> Verdict:
         float(evidence[i, columns.SIGMA]),
         int(evidence[i, columns.ONSET]),
     )
+
+
+def _is_in_step(row: Array) -> bool:
+    """Whether the loss has the thruster's direction in several channels, or is in step with it.
+
+    Where one channel alone speaks, as of a thruster that pushes along one axis, any disturbance has
+    its direction; then a jump, as of a stuck thrust, says nothing.
+    """
+    has_direction = row[columns.BESIDES] * row[columns.GAIN] >= MARGIN
+    is_jump = row[columns.KIND] == columns.STUCK
+    return bool(has_direction or (not is_jump and row[columns.FOLLOWED] <= -IN_STEP))
 
 
 def _explains(row: Array) -> bool:
