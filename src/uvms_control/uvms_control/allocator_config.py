@@ -9,7 +9,6 @@ from uvms_control.six import SixNotNegative
 from uvms_core import registry
 from uvms_core.plugin import PluginConfig, Slot
 
-
 Axis = Literal["X", "Y", "Z", "K", "M", "N"]
 Level = Annotated[tuple[Axis, ...], Field(min_length=1)]
 

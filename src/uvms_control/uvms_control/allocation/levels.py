@@ -45,7 +45,7 @@ def _dot(a, b, free, count):
 
 @exact_inner
 def _less(a, share, b):
-    """a - share b, in all columns, into a."""
+    """A - share b, in all columns, into a."""
     for i in range(a.size):
         a[i] -= share * b[i]
 
@@ -92,7 +92,7 @@ def _project(row, basis, spanned, free, count):
 
 @exact_inner
 def _missing(rows, first, end, target, u, out):
-    """b - A u of a level into `out`; returns the size of its largest term."""
+    """B - A u of a level into `out`; returns the size of its largest term."""
     largest = 0.0
     for a in range(first, end):
         total = target[a]

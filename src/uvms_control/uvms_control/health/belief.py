@@ -1,4 +1,4 @@
-"""What is believed of each thruster: what the user says comes before what the observer estimates."""
+"""What is believed of each thruster: the user's word comes before the observer's estimate."""
 
 from collections.abc import Mapping, Sequence
 from typing import Literal

@@ -1,4 +1,4 @@
-"""What /diagnostics says of the thrusters: who is weak, which axes are lost, what cannot be held."""
+"""What /diagnostics says of thrusters: who is weak, what axes are lost, what cannot be held."""
 
 from collections.abc import Iterator
 

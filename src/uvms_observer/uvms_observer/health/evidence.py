@@ -20,12 +20,17 @@ NONE, WEAK, STUCK = 0, 1, 2
 """What is found: nothing, a share that is left, a thrust that does not follow."""
 
 COLUMNS = 11
-GAIN, LEFT, SHARE, SIGMA, ONSET, KIND, THRUST, INFORMATION, TOTAL, BESIDES, FOLLOWED = range(COLUMNS)
-"""Columns of the evidence: fall of chi^2 against no fault; chi^2 per value that is left; lost share
-and its std; tick of the onset in the window; WEAK or STUCK; the stuck thrust, N; what the whole
-window tells of the share, 1 / variance; chi^2 per value without any fault; share of the evidence
-that is not of the channel with the most; and by how much chi^2 would be smaller if it were the other
-way round: a disturbance that the thrust follows."""
+GAIN, LEFT, SHARE, SIGMA, ONSET, KIND, THRUST, INFORMATION, TOTAL, BESIDES, FOLLOWED = range(
+    COLUMNS
+)
+"""Columns of the evidence:
+
+GAIN: fall of chi^2 against no fault. LEFT, TOTAL: chi^2 per value with the fault and without any.
+SHARE, SIGMA: lost share and its std. ONSET: its tick in the window. KIND: WEAK or STUCK. THRUST:
+the stuck thrust, N. INFORMATION: what the whole window tells of the share, 1 / variance. BESIDES:
+share of the evidence that is not of the channel with the most. FOLLOWED: by how much chi^2 would be
+smaller still if it were the other way round, a disturbance that the thrust follows.
+"""
 
 
 @exact_kernel

@@ -22,6 +22,9 @@ FOLLOWS_S = (0.4, 1.5)
 disturbance (a bandwidth of some rad/s) and the lag of the thruster come first."""
 PRIOR_SIGMA = 0.2
 """Of a thruster's share that no evidence has been seen of: data sheets and batteries."""
+SEARCHED, LEAST_SIGMA = 3.0, 0.03
+"""A share's std is that of the regression, so many times, since its onset was searched for and the
+disturbance was not quite constant; and not below the errors of lag and curve."""
 SHARE_RANGE = (-0.2, 1.0)
 """Share of the command that may be missing: a thruster may give a fifth more than the file says."""
 
@@ -112,7 +115,7 @@ class ThrusterMonitor:
         """Take a thruster's new share, and look at the rest from the fault's onset on."""
         i = verdict.thruster
         self._lost[i] = min(max(self._lost[i] + verdict.share, SHARE_RANGE[0]), SHARE_RANGE[1])
-        self._sigma[i] = max(verdict.sigma, 0.01)
+        self._sigma[i] = max(SEARCHED * verdict.sigma, LEAST_SIGMA)
         self._count = max(self._count - verdict.onset, 1)
         self._doubt()
 

@@ -32,7 +32,8 @@ LEAST_CHANGE = 0.05
 class Verdict:
     """What a window says: the thruster, the share that it lost beyond what is believed, its std.
 
-    `thruster` is -1 where none stands out, and a mere suspect where it is not `certain`; `onset` is the tick in the window.
+    `thruster` is -1 where none stands out, and a mere suspect where it is not `certain`; `onset`
+    is the tick in the window.
     """
 
     thruster: int = -1
@@ -46,7 +47,7 @@ NOTHING = Verdict()
 
 
 def decide(evidence: Array, lost: Array) -> Verdict:
-    """The verdict on the evidence (m, COLUMNS) of a window, with shares (m,) that are known lost."""
+    """The verdict on the evidence (m, COLUMNS) of a window; shares `lost` (m,) are known."""
     gains = evidence[:, columns.GAIN]
     i = int(gains.argmax())
     gain = gains[i]
