@@ -1,7 +1,7 @@
 """Thrusts for a wrench, within the thrusters' limits and beyond them.
 
-Uses uvms_control: bounded weighted least squares. If a wrench cannot be reached, the weights decide
-which axes give way; `preserve_direction` scales the whole wrench instead.
+Uses uvms_control: priorities in levels. If a wrench cannot be reached, the axes of the last levels
+give way first; `preserve_direction` scales the whole wrench instead.
 Run it: python examples/control_allocation.py
 """
 
@@ -25,10 +25,11 @@ print(
 )
 
 for preserve in (False, True):
-    allocator = ThrustAllocator(vehicle, AllocatorConfig(preserve_direction=preserve))
+    allocator = ThrustAllocator(
+        vehicle, AllocatorConfig(preserve_direction=preserve, lag_compensation=0.0)
+    )
     print(f"\npreserve_direction = {preserve}")
     for tick, (text, wrench) in enumerate(WRENCHES.items()):
-        # One second between commands, so that slew limits do not matter.
         _, found = allocator.step(Wrench((tick + 1) * 1_000_000_000, np.array(wrench)))
         print(f"  {text}: {np.array(wrench)}")
         print(f"    thrust   {found.thrust}  at a limit: {int(found.saturated.sum())}")

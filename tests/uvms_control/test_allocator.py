@@ -7,7 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uvms_control.allocation import (
-    ThrustAllocator,
+    WeightedAllocator,
     axes_without_authority,
 )
 from uvms_control.config import AllocatorConfig
@@ -18,7 +18,7 @@ from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import configuration_matrix
 
 VEHICLE = load_vehicle()
-REFERENCE = ThrustAllocator(VEHICLE, AllocatorConfig())
+REFERENCE = WeightedAllocator(VEHICLE, AllocatorConfig())
 MATRIX, LIMITS = REFERENCE.matrix, REFERENCE.limits
 AUTHORITY = np.array([98.0, 98.0, 196.0, 19.6, 107.8, 73.5])
 wrenches = st.lists(st.floats(-1.5, 1.5), min_size=6, max_size=6).map(
@@ -27,7 +27,7 @@ wrenches = st.lists(st.floats(-1.5, 1.5), min_size=6, max_size=6).map(
 
 
 def allocate(tau, **options):
-    return ThrustAllocator(VEHICLE, AllocatorConfig(**options)).step(Wrench(0, np.array(tau)))[1]
+    return WeightedAllocator(VEHICLE, AllocatorConfig(**options)).step(Wrench(0, np.array(tau)))[1]
 
 
 def random_layout(seed, m):
@@ -81,7 +81,7 @@ def test_limits_hold_and_achieved_plus_residual_is_the_command(tau):
 def test_any_layout_gives_the_weighted_least_squares_thrust(seed, m, tau):
     matrix, limits = random_layout(seed, m)
     config = AllocatorConfig(regularisation=1e-4)
-    allocator = ThrustAllocator.from_layout(matrix, limits, np.full(m, 1e3), config)
+    allocator = WeightedAllocator.from_layout(matrix, limits, np.full(m, 1e3), config)
     result = allocator.step(Wrench(0, tau))[1]
     rows = np.array(config.weights) / (np.abs(matrix) @ limits)
     stacked = np.vstack([rows[:, None] * matrix * limits, 1e-2 * np.eye(m)])
@@ -112,7 +112,7 @@ def test_thrusts_move_little_for_a_little_change_of_the_command(tau, direction):
 @settings(max_examples=50, deadline=None)
 @given(start=wrenches, goal=wrenches)
 def test_a_warm_start_changes_nothing(start, goal):
-    allocator = ThrustAllocator(VEHICLE, AllocatorConfig())
+    allocator = WeightedAllocator(VEHICLE, AllocatorConfig())
     for k, share in enumerate(np.linspace(0.0, 1.0, 9)):
         tau = (1.0 - share) * start + share * goal
         warm = allocator.step(Wrench(k, tau))[1].thrust
@@ -147,13 +147,13 @@ def test_slew_awareness_bounds_the_change_in_a_tick():
     matrix, limits = random_layout(1, 8)
     slew = np.full(8, 40.0)
     config = AllocatorConfig(slew_aware=True)
-    allocator = ThrustAllocator.from_layout(matrix, limits, slew, config)
+    allocator = WeightedAllocator.from_layout(matrix, limits, slew, config)
     thrust = allocator.step(Wrench(0, np.zeros(6)))[1].thrust
     for k in range(1, 60):
         result = allocator.step(Wrench(to_nanoseconds(0.05 * k), np.array([20.0] * 6)))[1]
         assert np.all(np.abs(result.thrust - thrust) <= 2.0 + 1e-9)
         thrust = result.thrust
-    free = ThrustAllocator.from_layout(matrix, limits, slew, AllocatorConfig())
+    free = WeightedAllocator.from_layout(matrix, limits, slew, AllocatorConfig())
     assert np.allclose(thrust, free.step(Wrench(0, np.array([20.0] * 6)))[1].thrust, atol=1e-4)
 
 
@@ -162,7 +162,7 @@ def test_axes_without_authority_are_named():
         np.array([[0.5, 0.1, 0.0], [0.5, -0.1, 0.0], [-0.5, 0.0, 0.0]]),
         np.tile([0.0, 0.0, 1.0], (3, 1)),
     )
-    allocator = ThrustAllocator.from_layout(
+    allocator = WeightedAllocator.from_layout(
         verticals, np.full(3, 49.0), np.full(3, 100.0), AllocatorConfig()
     )
     assert allocator.axes_without_authority == ("X", "Y", "N")
@@ -180,7 +180,7 @@ def test_coupled_axes_count_as_without_authority():
 
 
 def test_safe_command_is_zero_and_forgets_the_past():
-    allocator = ThrustAllocator(VEHICLE, AllocatorConfig(slew_aware=True))
+    allocator = WeightedAllocator(VEHICLE, AllocatorConfig(slew_aware=True))
     allocator.step(Wrench(0, 0.3 * AUTHORITY))
     command, result = allocator.safe(7)
     assert command.stamp == result.stamp == 7
@@ -202,7 +202,7 @@ def test_a_wrench_that_is_not_finite_is_named():
 
 def test_a_wrong_layout_is_named():
     with pytest.raises(ControlSetupError) as error:
-        ThrustAllocator.from_layout(
+        WeightedAllocator.from_layout(
             np.zeros((6, 2)), np.array([1.0, -1.0]), np.ones(2), AllocatorConfig()
         )
     assert str(error.value) == "thruster limits: [ 1. -1.], expected positive numbers"
@@ -211,7 +211,7 @@ def test_a_wrong_layout_is_named():
 def test_axes_that_can_be_pushed_one_way_only_are_named():
     changes = {f"thrusters.{i}.limit_n": None for i in range(VEHICLE.n_thrusters)}
     changes |= {f"thrusters.{i}.limits_n": [0.0, 49.0] for i in range(len(changes))}
-    allocator = ThrustAllocator(load_vehicle(None, changes), AllocatorConfig())
+    allocator = WeightedAllocator(load_vehicle(None, changes), AllocatorConfig())
     assert allocator.axes_without_authority == ()
     assert "X (only +)" in allocator.axes_pushed_one_way
     assert "both ways along" in allocator.warning

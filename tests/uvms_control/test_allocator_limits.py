@@ -7,7 +7,7 @@ import quadprog
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from uvms_control.allocation import ThrustAllocator, axis_authority
+from uvms_control.allocation import WeightedAllocator, axis_authority
 from uvms_control.config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
 from uvms_core.signals import Wrench
@@ -36,7 +36,7 @@ def along_surge(count, limits, least, **options):
     config = AllocatorConfig(**options)
     slew, ends = np.full(count, 1e3), np.tile(np.array(limits)[:, None], count)
     least = np.tile(np.array(least)[:, None], count)
-    return ThrustAllocator.from_layout(np.tile(SURGE, count), ends, slew, config, least)
+    return WeightedAllocator.from_layout(np.tile(SURGE, count), ends, slew, config, least)
 
 
 @settings(max_examples=100, deadline=None)
@@ -47,7 +47,7 @@ def test_any_limits_give_the_weighted_least_squares_thrust(seed, m):
     scale = np.abs(limits).max(axis=0)
     tau = 1.5 * rng.uniform(-1.0, 1.0, 6) * (np.abs(matrix) @ scale)
     config = AllocatorConfig(regularisation=1e-4)
-    allocator = ThrustAllocator.from_layout(matrix, limits, np.full(m, 1e3), config)
+    allocator = WeightedAllocator.from_layout(matrix, limits, np.full(m, 1e3), config)
     thrust = allocator.step(Wrench(0, tau))[1].thrust
     rows = np.array(config.weights) / (np.abs(matrix) @ scale)
     stacked = np.vstack([rows[:, None] * matrix * scale, 1e-2 * np.eye(m)])
@@ -124,8 +124,8 @@ def test_no_thrust_is_left_in_a_gap_and_rounding_alone_would_be_worse(seed, m):
     matrix, limits = layout(rng, m)
     least = np.vstack([0.02 * limits[0], 0.02 * limits[1]])
     config, slew = AllocatorConfig(), np.full(m, 1e3)
-    smooth = ThrustAllocator.from_layout(matrix, limits, slew, config)
-    allocator = ThrustAllocator.from_layout(matrix, limits, slew, config, least)
+    smooth = WeightedAllocator.from_layout(matrix, limits, slew, config)
+    allocator = WeightedAllocator.from_layout(matrix, limits, slew, config, least)
     tau = matrix @ (0.04 * rng.uniform(*limits))
     thrust, wanted = (each.step(Wrench(0, tau))[1].thrust for each in (allocator, smooth))
     nearest = np.where(wanted > 0.0, least[1], least[0])
@@ -140,7 +140,7 @@ def test_no_thrust_is_left_in_a_gap_and_rounding_alone_would_be_worse(seed, m):
 
 
 def test_the_bluerov_is_allocated_what_its_t200_can_give():
-    allocator = ThrustAllocator(BLUEROV, AllocatorConfig())
+    allocator = WeightedAllocator(BLUEROV, AllocatorConfig())
     rng = np.random.default_rng(4)
     for k in range(300):
         tau = rng.normal(size=6) * [20.0, 20.0, 10.0, 0.5, 0.0, 2.0] * rng.choice([0.02, 1.0, 9.0])
@@ -150,7 +150,7 @@ def test_the_bluerov_is_allocated_what_its_t200_can_give():
 
 
 def test_the_same_wrench_and_none_after_it():
-    allocator = ThrustAllocator(BLUEROV, AllocatorConfig())
+    allocator = WeightedAllocator(BLUEROV, AllocatorConfig())
     first = allocator.step(Wrench(0, surge(30.0)))[1]
     second = allocator.step(Wrench(1, surge(30.0)))[1]
     np.testing.assert_allclose(first.thrust, second.thrust, atol=1e-6)

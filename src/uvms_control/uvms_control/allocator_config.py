@@ -25,8 +25,8 @@ class AllocatorConfig(PluginConfig):
     )
     priorities: tuple[Level, ...] = Field(
         default=(("K", "M"), ("Z",), ("N",), ("X", "Y")),
-        description="axes in levels, each axis once: when thrusters saturate, a level keeps all that"
-        " it can have before the next one gets anything; within a level, weights decide",
+        description="axes in levels, each axis once: when thrusters saturate, a level keeps all"
+        " that it can have before the next one gets anything; within a level, weights decide",
     )
     weights: SixNotNegative = Field(
         default=(1.0, 1.0, 1.0, 10.0, 10.0, 3.0),
@@ -50,18 +50,19 @@ class AllocatorConfig(PluginConfig):
         description="keep each thrust within what the thruster's slew limit reaches in a tick",
     )
     lag_compensation: float = Field(
-        default=0.0,
+        default=0.8,
         ge=0.0,
         le=1.0,
-        description="share of the thrusters' lag that commands make up for by going beyond the wanted"
-        " thrust; 1: it is there at the end of the control period; true and false are 1 and 0",
+        description="share of the thrusters' lag that commands make up for by going beyond the"
+        " wanted thrust; 1: it is there at the end of the control period; true and false are 1 and"
+        " 0. weighted_least_squares makes up for none",
     )
     shortage_window_s: float = Field(
         default=5.0,
         gt=0.0,
-        le=600.0,
-        description="how far back the record reaches of thrusters at their limits and axes that fall"
-        " short, s",
+        le=60.0,
+        description="how far back the record reaches of thrusters at their limits and axes that"
+        " fall short, s",
     )
     effectiveness: dict[str, float] = Field(
         default_factory=dict,

@@ -61,7 +61,9 @@ class AllocationMethod(Protocol):
 
     An attribute `warning` with a text, where there is one, is logged when the node starts. A method
     `inform(budget)`, where there is one, is called before each step with the `DisturbanceBudget`
-    of the tick before (None at the first), which tells of thrusters that fail.
+    of the tick before (None at the first), which tells of thrusters that fail. A method
+    `safe(stamp)`, where there is one, says what is commanded where there is no wrench to share out:
+    a `ThrusterCommand` without thrust, and its `Allocation`.
     """
 
     @abstractmethod

@@ -106,7 +106,13 @@ class AllocatorPart(Part):
         return self.thrusters.status()
 
     def safe(self, tick: Tick) -> Iterator[Output]:
-        """No thrust."""
+        """No thrust; a method that has a `safe` of its own says what that is."""
+        if safe := getattr(self.method, "safe", None):
+            command, allocation = safe(tick.stamp)
+            yield topics.THRUSTER_COMMAND, command
+            yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, allocation.achieved)
+            yield topics.ALLOCATION, allocation
+            return
         thrust, none = np.zeros(self._vehicle.n_thrusters), np.zeros(6)
         yield topics.THRUSTER_COMMAND, ThrusterCommand(tick.stamp, thrust)
         yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, none)

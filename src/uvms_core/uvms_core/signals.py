@@ -245,8 +245,9 @@ class Allocation:
 
     stamp: int
     thrust: ByThruster  # N
-    achieved: Array6  # wrench of these thrusts
-    residual: Array6  # commanded minus achieved
+    achieved: Array6  # wrench of these thrusts, each with its effectiveness
+    residual: Array6  # commanded minus what the thrusters will give; where no lag is made up for,
+    # commanded minus achieved
     saturated: NDArray[np.bool_]  # (m,)
     effectiveness: Array = field(default_factory=_nothing)
     """(m,) share of its command that each thruster is taken to give; (0,): all of it."""

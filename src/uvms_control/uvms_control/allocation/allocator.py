@@ -4,8 +4,8 @@ Where thrusters saturate, somebody has to go short. `ThrustAllocator` allots by 
 attitude about the axes that could tip the vehicle first, then depth, heading, position. An axis
 keeps all that it can have before the next level gets anything. `WeightedAllocator` has weights
 instead of levels: an axis of low weight loses most, but those of high weight lose something too.
-Preserving the direction, an option of both, scales the whole wrench down: its direction is kept, but
-a shortage of heave force costs as much roll moment.
+Preserving the direction, an option of both, scales the whole wrench down: its direction is kept,
+but a shortage of heave force costs as much roll moment.
 
 Both solve for commands. A thruster that has lost thrust, or one whose lag is compensated, gives a
 known share of its command; its column of the matrix is scaled by that, and its limits stay those of
@@ -60,6 +60,9 @@ class ThrustAllocator:
         shortage: which thrusters have been at their limits, and which axes short, for how long.
     """
 
+    compensates = True
+    """Whether commands go beyond wanted thrusts, as far as `allocation.lag_compensation` says."""
+
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`; any number of thrusters."""
         limits, slew = thruster_limits(vehicle)
@@ -105,8 +108,9 @@ class ThrustAllocator:
         self._gross = np.abs(matrix) @ self.limits
         self._row_scale = 1.0 / np.maximum(self._gross, 1e-9)
         self._margin = SATURATION_MARGIN * self.limits
-        compensates = lags is not None and config.lag_compensation > 0.0
-        self._lag = LagCompensation(lags, slew, config.lag_compensation) if compensates else None
+        self._lag: LagCompensation | None = None
+        if self.compensates and lags is not None and config.lag_compensation > 0.0:
+            self._lag = LagCompensation(lags, slew, config.lag_compensation)
         self.shortage = Shortage(config.shortage_window_s, self._gross, self.limits.size)
         self.effectiveness = np.ones(self.limits.size)
         self._gap: ThrustGap | None = None
@@ -118,7 +122,8 @@ class ThrustAllocator:
     def _rebuild(self) -> None:
         """Solver and bounds for what the thrusters now make of their commands."""
         self._dead = self.effectiveness == 0.0
-        self._held = self._box * ~self._dead
+        self._any_dead = bool(self._dead.any())
+        self._held = tuple(self._box * ~self._dead)
         self._given = self.matrix * self.effectiveness
         slope = self._given if self._lag is None else self._given * self._lag.slope
         self._solver = self._make_solver(slope)
@@ -135,10 +140,12 @@ class ThrustAllocator:
         """Forget the last thrust and the warm start; the effectiveness stays."""
         self._stamp: int | None = None
         self._thrust = np.zeros_like(self.limits)
+        self._coming = np.zeros(6)
         self._solver.reset()
         self.shortage.reset()
         if self._lag is not None:
             self._lag.reset()
+            self._rebuild()
         if self._gap is not None:
             self._gap.reset()
 
@@ -210,9 +217,13 @@ class ThrustAllocator:
         """
         checks.check("wrench_command", wrench)
         tau = wrench.wrench
-        if self._lag is not None:
-            tau = self._ahead(self._lag, wrench.stamp, tau)
         lower, upper = self._bounds(wrench.stamp)
+        if self._lag is not None:
+            if self._lag.advance(wrench.stamp):
+                self._rebuild()
+            self._coming, tau, lower, upper = self._lag.left(self._given, tau, lower, upper)
+        if self._any_dead:
+            lower, upper = np.where(self._dead, 0.0, lower), np.where(self._dead, 0.0, upper)
         thrust, tau_wanted = self._solver.solve(tau, lower, upper), tau
         if self._config.preserve_direction and not self._exact(thrust, tau):
             thrust = self._scaled(tau, lower, upper, thrust)
@@ -230,19 +241,13 @@ class ThrustAllocator:
         zero = np.zeros_like(self.limits)
         return self._result(stamp, np.zeros(6), zero, *self._box)
 
-    def _ahead(self, lag: LagCompensation, stamp: int, tau: Array) -> Array:
-        """What is left of the wrench once the thrusters have done what they do without command."""
-        if lag.advance(stamp):
-            self._rebuild()
-        return tau - self._given @ lag.offset
-
     def _result(
         self, stamp: int, tau: Array, thrust: Array, lower: Array, upper: Array
     ) -> tuple[ThrusterCommand, Allocation]:
         achieved = given = self._given @ thrust
         if self._lag is not None:
             self._lag.hold(stamp, thrust)
-            given = self._given @ self._lag.wanted(thrust)
+            given = self._solver.tables[0] @ thrust + self._coming
         saturated = np.empty(thrust.size, dtype=np.bool_)
         mark_saturated(thrust, lower, upper, self._margin, self._reverses, self._dead, saturated)
         residual = tau - given
@@ -256,10 +261,6 @@ class ThrustAllocator:
             reach = self._slew * max(to_seconds(stamp - self._stamp), 0.0)
             lower = np.maximum(lower, self._thrust - reach)
             upper = np.minimum(upper, self._thrust + reach)
-        if self._lag is not None:
-            lower, upper = self._lag.bounds(lower, upper)
-        if self._dead.any():
-            lower, upper = np.where(self._dead, 0.0, lower), np.where(self._dead, 0.0, upper)
         return lower, upper
 
     def _exact(self, thrust: Array, tau: Array) -> bool:
@@ -277,7 +278,12 @@ class ThrustAllocator:
 
 
 class WeightedAllocator(ThrustAllocator):
-    """min |W (B u - tau)|^2 + eps |u / u_max|^2 within the limits, by an active-set method."""
+    """min |W (B u - tau)|^2 + eps |u / u_max|^2 within the limits, by an active-set method.
+
+    It commands the wanted thrusts themselves, whatever their lag.
+    """
+
+    compensates = False
 
     def _make_solver(self, matrix: Array) -> Solver:
         weights, regularisation = np.array(self._config.weights), self._config.regularisation

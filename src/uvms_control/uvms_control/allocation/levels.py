@@ -32,7 +32,7 @@ NOISE = 1e-13
 def workspace(row_count, variable_count):
     """Arrays for `solve_levels`: float64 and int64."""
     width = max(row_count, variable_count)
-    return np.zeros((5 * row_count + 6, width)), np.zeros((3, width), dtype=np.int64)
+    return np.zeros((5 * row_count + 4, width)), np.zeros((2, width), dtype=np.int64)
 
 
 @exact_inner
@@ -288,6 +288,61 @@ def _close(multiplier, tolerance, state, basis, spanned, free):
     return count
 
 
+@exact_inner
+def _step(rows, first, end, target, u, basis, spanned, free, count, own, square, small, direction):
+    """Direction (m,) to the level's least-norm minimum over the free variables.
+
+    `square` is two arrays (r, r), `small` two (r,), all for what is computed on the way.
+    """
+    if first == end:
+        for i in range(u.size):
+            direction[i] = -u[i]
+        _project(direction, basis, spanned, free, count)
+        return
+    missing, y = small[0], small[1]
+    _missing(rows, first, end, target, u, missing)
+    taken = _independent(rows, first, end, basis, spanned, free, count, own, square[0], missing)
+    _solve_small(square[0], end - first, taken, missing, square[1], y)
+    for k in range(count):
+        total = 0.0
+        for b in range(taken):
+            total += y[b] * own[b, free[k]]
+        direction[free[k]] = total
+
+
+@exact_inner
+def _solve_level(
+    rows, first, end, target, lower, upper, u, basis, spanned, parts, state, free, left
+):
+    """The optimum of one level in place; (steps or TOO_MANY_STEPS, a variable is held, tolerance).
+
+    The level's multipliers are left in the second row of `parts[3]`.
+    """
+    q, own, square, line, small = parts
+    m, holds, stalled, tolerance = u.size, False, 0, 0.0
+    for step in range(1, left + 1):
+        count = _list_free(state, free)
+        for b in range(spanned):
+            for i in range(m):
+                q[b, i] = basis[b, i]
+        if holds:
+            _orthonormalise(q, spanned, free, count)
+        _step(rows, first, end, target, u, q, spanned, free, count, own, square, small, line[0])
+        ended, length = _walk(lower, upper, u, state, free, count, line[0])
+        stalled = 0 if length > NOISE else stalled + 1
+        if not ended:
+            holds = True
+            continue
+        if not holds:
+            return step, holds, tolerance
+        tolerance = _multipliers(
+            rows, first, end, target, u, state, q, spanned, free, count, small[0], line[1]
+        )
+        if not _release(line[1], state, tolerance, stalled > 2 * m):
+            return step, holds, tolerance
+    return TOO_MANY_STEPS, holds, tolerance
+
+
 @exact_kernel
 def solve_levels(rows, ends, target, lower, upper, u, work, whole, max_steps):
     """Lexicographic optimum in place, from any start `u`; the steps taken, or TOO_MANY_STEPS.
@@ -299,66 +354,34 @@ def solve_levels(rows, ends, target, lower, upper, u, work, whole, max_steps):
         lower, upper: bounds (m,), which may be infinite, or equal.
         u: start and result (m,).
         work, whole: from `workspace(r, m)`.
+        max_steps: the most steps.
     """
     r, m = rows.shape
     basis, q, own = work[:r, :m], work[r : 2 * r, :m], work[2 * r : 3 * r, :m]
-    factor, small = work[3 * r : 4 * r, :r], work[4 * r : 5 * r, :r]
-    rest = work[5 * r :]
-    direction, multiplier, missing, y = rest[0, :m], rest[1, :m], rest[2, :r], rest[3, :r]
+    square = (work[3 * r : 4 * r, :r], work[4 * r : 5 * r, :r])
+    line, small = work[5 * r : 5 * r + 2, :m], work[5 * r + 2 : 5 * r + 4, :r]
+    parts = (q, own, square, line, small)
     state, free = whole[0, :m], whole[1, :m]
     for i in range(m):
         u[i] = min(max(u[i], lower[i]), upper[i])
         state[i] = FIXED if lower[i] == upper[i] else FREE
-    first, spanned, steps, tolerance = 0, 0, 0, 0.0
+    first, spanned, steps = 0, 0, 0
     for level in range(ends.size + 1):
         end = ends[level] if level < ends.size else first
-        holds, stalled = False, 0
-        while True:
-            steps += 1
-            if steps > max_steps:
-                return TOO_MANY_STEPS
-            count = _list_free(state, free)
-            if count == 0 and not holds:
-                return steps
-            for b in range(spanned):
-                for i in range(m):
-                    q[b, i] = basis[b, i]
-            if holds:
-                _orthonormalise(q, spanned, free, count)
-            if first == end:
-                for i in range(m):
-                    direction[i] = -u[i]
-                _project(direction, q, spanned, free, count)
-            else:
-                _missing(rows, first, end, target, u, missing)
-                taken = _independent(
-                    rows, first, end, q, spanned, free, count, own, factor, missing
-                )
-                _solve_small(factor, end - first, taken, missing, small, y)
-                for k in range(count):
-                    total = 0.0
-                    for b in range(taken):
-                        total += y[b] * own[b, free[k]]
-                    direction[free[k]] = total
-            ended, length = _walk(lower, upper, u, state, free, count, direction)
-            stalled = 0 if length > NOISE else stalled + 1
-            if not ended:
-                holds = True
-                continue
-            if not holds:
-                break
-            tolerance = _multipliers(
-                rows, first, end, target, u, state, q, spanned, free, count, missing, multiplier
-            )
-            if not _release(multiplier, state, tolerance, stalled > 2 * m):
-                break
-        if level == ends.size:
-            return steps
+        taken, holds, tolerance = _solve_level(
+            rows, first, end, target, lower, upper, u, basis, spanned, parts, state, free,
+            max_steps - steps,
+        )  # fmt: skip
+        if taken < 0:
+            return TOO_MANY_STEPS
+        steps += taken
         count = _list_free(state, free)
         if holds:
-            count = _close(multiplier, tolerance, state, basis, spanned, free)
+            count = _close(line[1], tolerance, state, basis, spanned, free)
+        if level == ends.size or count == 0:
+            break
         taken = _independent(
-            rows, first, end, basis, spanned, free, count, own, factor, missing
+            rows, first, end, basis, spanned, free, count, own, square[0], small[0]
         )
         for b in range(taken):
             for i in range(m):

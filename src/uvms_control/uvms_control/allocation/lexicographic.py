@@ -117,7 +117,9 @@ class LexicographicLeastSquares:
         u, low, high = np.zeros(m + 1), np.zeros(m + 1), np.full(m + 1, size)
         low[:-1], high[:-1] = lower / self.limits, upper / self.limits
         goal, ends = np.append(np.zeros(count), 1.0), np.array([count, count + 1])
-        steps = solve_levels(rows, ends, goal, low, high, u, *workspace(count + 1, m + 1), self.max_steps)
+        steps = solve_levels(
+            rows, ends, goal, low, high, u, *workspace(count + 1, m + 1), self.max_steps
+        )
         if steps < 0:
             self.fail(tau)
         if np.abs(rows[:-1] @ u).max(initial=0.0) > ATTAINED:

@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Iterator
-from typing import Any, TypeVar, get_origin
+from typing import Annotated, Any, TypeVar, get_args, get_origin
 
 import annotated_types
 from pydantic import BaseModel
@@ -44,7 +44,7 @@ def flatten(config: Config) -> dict[str, Any]:
     """A configuration as ROS parameter names and values, for a parameter file.
 
     Empty lists are left out: ROS cannot tell their type, and they are the defaults. Maps, and lists
-    of sections, are JSON.
+    of sections or of lists, are JSON.
     """
     leaves = _leaves(_resolved(config))
     return {".".join(path): _to_ros(value, field) for path, field, value in leaves if value != ()}
@@ -104,12 +104,18 @@ def _leaves(
 def _is_text(field: FieldInfo) -> bool:
     """Whether the parameter is a text in YAML or JSON, since ROS has no type for the field.
 
-    Maps, and lists of sections.
+    Maps, and lists of sections or of lists.
     """
     annotation = field.annotation
-    return get_origin(annotation) is dict or (
-        get_origin(annotation) is tuple and next(models_in(annotation), None) is not None
-    )
+    if get_origin(annotation) is not tuple:
+        return get_origin(annotation) is dict
+    return next(models_in(annotation), None) is not None or _holds_lists(annotation)
+
+
+def _holds_lists(annotation: Any) -> bool:
+    inner = (get_args(each)[0] if get_origin(each) is Annotated else each
+             for each in get_args(annotation))  # fmt: skip
+    return any(get_origin(each) is tuple for each in inner)
 
 
 def _from_text(name: str, value: Any) -> Any:
