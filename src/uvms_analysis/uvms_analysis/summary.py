@@ -16,6 +16,7 @@ from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
 from uvms_analysis.lyapunov import NAMES, stability
 from uvms_analysis.outcome import judge, judged_by
+from uvms_analysis.thruster_faults import errors_first_s, thruster_faults
 from uvms_core import topics
 from uvms_core.signals import Array
 from uvms_core.vehicle import vehicle_warnings
@@ -108,6 +109,8 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
     summary["rejected_messages"] = {name: len(items) for name, items in log.rejected.items()}
     summary["incidents"] = [] if end is None else list(end.incidents)
     summary["node_counters"] = figures.of("node_counters", lambda: node_counters(log))
+    summary["thruster_faults"] = figures.of("thruster_faults", lambda: thruster_faults(log), {})
+    summary["errors_first_s"] = figures.of("errors_first_s", lambda: errors_first_s(log), {})
     summary["vehicle_warnings"] = figures.of(
         "vehicle_warnings", lambda: list(map(str, vehicle_warnings(log.vehicle)))
     )

@@ -64,6 +64,11 @@ class AllocatorConfig(PluginConfig):
         description="how far back the record reaches of thrusters at their limits and axes that"
         " fall short, s",
     )
+    effectiveness: dict[str, float] = Field(
+        default_factory=dict,
+        description="share of its command that a thruster gives, by its name, as the user knows it"
+        " (0 dead, 1 whole, at most 1.2); it comes before what the observer estimates",
+    )
 
     @field_validator("lag_compensation", mode="before")
     @classmethod

@@ -1,12 +1,14 @@
 """Controller and thrust allocator as parts of the loop."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 
 from uvms_control.config import AllocatorConfig, ControlConfig
+from uvms_control.health import Thrusters
 from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_core import topics
+from uvms_core.diagnostics import Trouble
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench, to_seconds
@@ -73,23 +75,35 @@ class AllocatorPart(Part):
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig, period: int) -> None:
         self._vehicle, self._config = vehicle, config
         self.method: AllocationMethod = create(config, vehicle)
+        self.thrusters = Thrusters(vehicle, config.effectiveness)
         self.inputs = {
             topics.WRENCH_COMMAND: Same(),
             topics.DISTURBANCE_BUDGET: Previous(period),
         }
 
     def step(self, tick: Tick) -> Iterator[Output]:
-        """One allocation."""
+        """One allocation, with the thrusters as they are believed to be."""
+        budget = tick[topics.DISTURBANCE_BUDGET.name]
         if inform := getattr(self.method, "inform", None):
-            inform(tick[topics.DISTURBANCE_BUDGET.name])
-        command, allocation = self.method.step(tick[topics.WRENCH_COMMAND.name])
+            inform(budget)
+        self.thrusters.before(self.method, budget)
+        told = self.method.step(tick[topics.WRENCH_COMMAND.name])
+        command, allocation = self.thrusters.after(told)
         yield topics.THRUSTER_COMMAND, command
         yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, allocation.achieved)
         yield topics.ALLOCATION, allocation
 
     def restart(self, reason: str) -> None:
-        """The method restarts, without a thrust before."""
+        """The method restarts, without a thrust before; what the user said stays."""
         self.method = create(self._config, self._vehicle)
+
+    def trouble(self) -> Trouble | None:
+        """Weak thrusters, lost axes, and what cannot be held."""
+        return self.thrusters.trouble()
+
+    def status(self) -> Mapping[str, float]:
+        """Share that each thruster gives, and share of its authority that each axis has."""
+        return self.thrusters.status()
 
     def safe(self, tick: Tick) -> Iterator[Output]:
         """No thrust; a method that has a `safe` of its own says what that is."""
@@ -103,4 +117,6 @@ class AllocatorPart(Part):
         yield topics.THRUSTER_COMMAND, ThrusterCommand(tick.stamp, thrust)
         yield topics.WRENCH_ACHIEVED, Wrench(tick.stamp, none)
         unsaturated = np.zeros(self._vehicle.n_thrusters, dtype=np.bool_)
-        yield topics.ALLOCATION, Allocation(tick.stamp, thrust, none, none, unsaturated)
+        shares = self.thrusters.belief.effectiveness
+        allocation = Allocation(tick.stamp, thrust, none, none, unsaturated, shares)
+        yield topics.ALLOCATION, allocation

@@ -2,11 +2,22 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 OK, WARN, ERROR, STALE = range(4)
 
 GOALS_ACCEPTED, PAUSES = "goals_accepted", "pauses"
 """Values of the planner and of the plant: what was asked of them, by whomever."""
+
+
+class Trouble(NamedTuple):
+    """Why what a part puts out cannot be relied on: how bad it is, and what it is in words.
+
+    It is reported as soon as it changes, so that its text has no numbers that change all the time.
+    """
+
+    level: int  # WARN or ERROR
+    text: str
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 
 from uvms_core import topics
-from uvms_core.diagnostics import ERROR, OK, Status
+from uvms_core.diagnostics import ERROR, OK, Status, Trouble
 from uvms_core.errors import PlantDiverged, PluginError, SignalError, UnsafeOutputError, UvmsError
 from uvms_core.plausibility import Plausibility
 from uvms_core.signals import to_seconds
@@ -66,7 +66,7 @@ class Part(ABC):
         """Values for /diagnostics."""
         return {}
 
-    def trouble(self) -> str | None:
+    def trouble(self) -> Trouble | None:
         """Why what it puts out cannot be relied on, for /diagnostics; None where it can."""
         return None
 
@@ -117,6 +117,7 @@ class InProcess:
             role: {"refused": 0, "unsafe_outputs": 0} for role in self.order
         }
         self._excuses = False
+        self._troubles: dict[str, Trouble | None] = {}  # what was told last
         self.refused = 0
         """Signals from outside that were not used."""
 
@@ -128,11 +129,7 @@ class InProcess:
     def final_status(self, stamp: int) -> Iterator[Status]:
         """What each part has counted, as its node would say it at the end of a run."""
         for role, part, _ in self._parts:
-            trouble = part.trouble()
-            level = OK if trouble is None else ERROR
-            yield Status(
-                stamp, role, level, trouble or "ok", {**self._counts[role], **part.status()}
-            )
+            yield _status(stamp, role, part.trouble(), {**self._counts[role], **part.status()})
 
     def admit_all(self, outputs: Iterable[Output]) -> None:
         """Hand over signals from outside, as `admit` does."""
@@ -194,7 +191,8 @@ class InProcess:
     def tick(self, stamp: int) -> Iterator[tuple[str, list[Output]]]:
         """Call each part whose tick this stamp is; yields role and outputs, already delivered.
 
-        What was refused, and parts whose output was invalid, are among the outputs as diagnostics.
+        What was refused, parts whose output was invalid, and a part's trouble where it has changed,
+        are among the outputs as diagnostics.
         """
         for role, part, rules in self._parts:
             if stamp % part.every:
@@ -206,6 +204,10 @@ class InProcess:
                 self._pass_on(topic, signal)
             if self._faults:
                 outputs.append(self._diagnosis(role, stamp))
+            if (trouble := part.trouble()) != self._troubles.get(role):
+                self._troubles[role] = trouble
+                values = {**self._counts[role], **part.status()}
+                outputs.append((topics.DIAGNOSTICS, _status(stamp, role, trouble, values)))
             yield role, outputs
 
     def _pass_on(self, topic: Topic, signal: Any) -> None:
@@ -241,6 +243,13 @@ class InProcess:
     def _diagnosis(self, role: str, stamp: int) -> Output:
         text, self._faults = "; ".join(self._faults), []
         return topics.DIAGNOSTICS, Status(stamp, role, ERROR, text, dict(self._counts[role]))
+
+
+def _status(
+    stamp: int, role: str, trouble: Trouble | None, values: Mapping[str, float | int | bool | str]
+) -> Status:
+    level, text = (OK, "ok") if trouble is None else trouble
+    return Status(stamp, role, level, text, values)
 
 
 def safe_step(

@@ -5,6 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from uvms_core import topics
+from uvms_core.diagnostics import ERROR, Trouble
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
@@ -21,6 +22,11 @@ from uvms_observer.truth import TruthPart
 
 CERTAIN = 10.0
 """The position is known again within this many std of a GPS fix, and as many metres."""
+LOST = Trouble(
+    ERROR,
+    "started in the middle of a run without an estimate: the position is not known before one is"
+    " measured",
+)
 REMEMBERED = 4
 """Estimates from before that are kept: of the node's start, and of the last jumps of time."""
 
@@ -89,14 +95,9 @@ class NavigationPart(Part):
         self.filter = create(self._config, self._vehicle)
         self._begun, self._known, self._good, self.estimate = False, True, None, None
 
-    def trouble(self) -> str | None:
+    def trouble(self) -> Trouble | None:
         """Where the filter does not know the position."""
-        if self._known:
-            return None
-        return (
-            "started in the middle of a run without an estimate: the position is not known"
-            " before one is measured"
-        )
+        return None if self._known else LOST
 
     def safe(self, tick: Tick) -> Iterator[Output]:
         """The last good estimate, straight ahead, and less certain; nothing where it is too old."""

@@ -29,6 +29,7 @@ from uvms_control.allocation.saturation import Shortage
 from uvms_control.allocation.solver import Solver
 from uvms_control.allocator_config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
+from uvms_control.health.belief import GREATEST_SHARE, LEAST_SHARE
 from uvms_control.vehicle_data import least_thrusts, thruster_lags, thruster_limits
 from uvms_core import checks
 from uvms_core.errors import SignalError
@@ -149,20 +150,23 @@ class ThrustAllocator:
             self._gap.reset()
 
     def set_effectiveness(self, effectiveness: Array) -> None:
-        """From the next step on, each thruster gives this share (m,), 0 to 1, of its command.
+        """From the next step on, each thruster gives this share (m,), 0 to 1.2, of its command.
 
         One below 0.05 is left out. What it costs, a fraction of a millisecond, is spent only where
         a share has changed.
 
-        Raises SignalError for a wrong shape or a share outside of 0 to 1.
+        Raises SignalError for a wrong shape or a share outside of 0 to 1.2.
         """
         shares = np.asarray(effectiveness, dtype=np.float64)
         if shares.shape != self.limits.shape:
             raise SignalError(
                 f"effectiveness has shape {shares.shape}; it must have ({self.limits.size},)"
             )
-        for i in np.flatnonzero(~((shares >= 0.0) & (shares <= 1.0))):
-            raise SignalError(f"effectiveness[{i}] is {shares[i]}; it must be in 0 to 1")
+        for i in np.flatnonzero(~((shares >= LEAST_SHARE) & (shares <= GREATEST_SHARE))):
+            raise SignalError(
+                f"effectiveness[{i}] is {shares[i]}; it must be in {LEAST_SHARE:g} to"
+                f" {GREATEST_SHARE:g}"
+            )
         shares = np.where(shares < DEAD, 0.0, shares)
         if not np.array_equal(shares, self.effectiveness):
             self.effectiveness = shares

@@ -24,6 +24,7 @@ class PartNode(UvmsNode):
         self.part = self.make_part()
         self.step_ms = 0.0  # wall time of the last step
         self.unsafe_outputs = 0
+        self._trouble: diagnostics.Trouble | None = None  # that was told last
         part = self.part
         self.connect(part.inputs, part.trigger, self.take_tick, part.in_loop, part.every)
 
@@ -46,14 +47,15 @@ class PartNode(UvmsNode):
         elif fault is not None:
             self.refuse(tick.stamp, [fault])
         self.refuse(tick.stamp, self.part.take_faults())
+        self._tell(tick.stamp)
+
+    def _tell(self, stamp: int) -> None:
+        """How the part is, each second and whenever its trouble changes."""
         trouble = self.part.trouble()
-        self.report_each_second(
-            tick.stamp,
-            diagnostics.OK if trouble is None else diagnostics.ERROR,
-            trouble or "ok",
-            step_ms=self.step_ms,
-            **self.part.status(),
-        )
+        level, text = (diagnostics.OK, "ok") if trouble is None else trouble
+        tell = self.report_each_second if trouble == self._trouble else self.report
+        self._trouble = trouble
+        tell(stamp, level, text, step_ms=self.step_ms, **self.part.status())
 
     def on_time_jump(self, jump: Jump) -> None:
         """Time has jumped: the part is restarted."""

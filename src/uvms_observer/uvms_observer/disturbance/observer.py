@@ -6,11 +6,13 @@ import numpy as np
 
 from uvms_core import checks
 from uvms_core.signals import (
+    Allocation,
     Array,
     DisturbanceBudget,
     JointStates,
     Odometry,
     Payload,
+    ThrusterHealth,
     Wrench,
     to_seconds,
 )
@@ -23,9 +25,12 @@ from uvms_observer.disturbance.external import follow_external, momentum_noise, 
 from uvms_observer.disturbance.model_parts import ModelParts
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
+from uvms_observer.health import ThrusterMonitor
 from uvms_observer.payload import PayloadEstimator
 from uvms_observer.payload.fit import theta_of
 
+NOT_KNOWN = np.zeros(6)
+"""Std of the unexplained wrench of one interval: the monitor works it out from the wrench."""
 FORMER_BANDWIDTH_RAD_S = 0.5
 """Of the observer that was called momentum_residual."""
 
@@ -80,7 +85,7 @@ class ModelObserver:
         if self._config.external:
             total += external
         budget = DisturbanceBudget(
-            odometry.stamp, restoring, coupling, external, sigma, self._payload()
+            odometry.stamp, restoring, coupling, external, sigma, self._payload(), self._thrusters()
         )
         return budget, Wrench(odometry.stamp, total)
 
@@ -96,6 +101,9 @@ class ModelObserver:
         return np.zeros(6), np.zeros(6)
 
     def _payload(self) -> Payload | None:
+        return None
+
+    def _thrusters(self) -> ThrusterHealth | None:
         return None
 
     def _check(self, odometry: Odometry, joints: JointStates, achieved: Wrench | None) -> None:
@@ -170,7 +178,7 @@ class DisturbanceObserver(ModelObserver):
 
 
 class CombinedObserver(DisturbanceObserver):
-    """Observer `combined`: as `momentum`, and what the gripper holds.
+    """Observer `combined`: as `momentum`, and what the gripper holds and the thrusters lose.
 
     A payload that is confirmed is taken into the model, so that its forces are where they belong:
     in restoring and coupling at the posture of the arm, and no more in the external wrench.
@@ -180,8 +188,17 @@ class CombinedObserver(DisturbanceObserver):
         super().__init__(vehicle, config)
         self._estimator = PayloadEstimator(vehicle)
         self._in_model = self._estimator.payload
+        self._monitor = ThrusterMonitor(vehicle)
+        self._allocation: Allocation | None = None
+
+    def inform(self, allocation: Allocation | None) -> None:
+        """Thrusts of the tick before, one by one, and the shares that they were counted with."""
+        self._allocation = allocation
 
     def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
+        if (told := self._allocation) is not None:
+            wrench = force[:6] - forces[:6] @ self._theta
+            self._monitor.step(dt, wrench, NOT_KNOWN, told.thrust, told.effectiveness)
         if self._estimator.step(dt, force, forces, noise):
             held = self._estimator.payload
             if differs(held, self._in_model):
@@ -195,6 +212,9 @@ class CombinedObserver(DisturbanceObserver):
 
     def _payload(self) -> Payload:
         return self._estimator.payload
+
+    def _thrusters(self) -> ThrusterHealth:
+        return self._monitor.health
 
 
 class FormerObserver(DisturbanceObserver):

@@ -1,0 +1,5 @@
+"""Thruster health: which thruster gives less than it is told, seen in the vehicle's motion."""
+
+from uvms_observer.health.monitor import ThrusterMonitor
+
+__all__ = ["ThrusterMonitor"]

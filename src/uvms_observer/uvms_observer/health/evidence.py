@@ -1,0 +1,150 @@
+"""What a stretch of time says about each thruster: a test of likelihood ratios over one window.
+
+The wrench that motion needs beyond whole thrusters is, tick by tick,
+
+    r(t) = d(t) - b_i (1 - e_i) T_i(t) + noise       from the tick t_0 on, at which i fails,
+
+with the thruster's column b_i, its lagged thrust T_i and what is left of it, e_i. A stuck thruster
+gives a constant u_i instead: r = d - b_i (T_i - u_i). With d constant over the window and noise of
+known size, each onset and each thruster is a linear regression along b_i. Channels are weighted by
+1 / sigma^2; what lies across b_i must stay at the noise: a disturbance along exactly this direction
+and in step with this thrust is what no current does (Willsky and Jones 1976, "A generalized
+likelihood ratio approach", whose growing bank of onsets is cut to the window here).
+"""
+
+import numpy as np
+
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+
+NONE, WEAK, STUCK = 0, 1, 2
+"""What is found: nothing, a share that is left, a thrust that does not follow."""
+
+COLUMNS = 11
+GAIN, LEFT, SHARE, SIGMA, ONSET, KIND, THRUST, INFORMATION, TOTAL, BESIDES, FOLLOWED = range(
+    COLUMNS
+)
+"""Columns of the evidence:
+
+GAIN: fall of chi^2 against no fault. LEFT, TOTAL: chi^2 per value with the fault and without any.
+SHARE, SIGMA: lost share and its std. ONSET: its tick in the window. KIND: WEAK or STUCK. THRUST:
+the stuck thrust, N. INFORMATION: what the whole window tells of the share, 1 / variance. BESIDES:
+share of the evidence that is not of the channel with the most. FOLLOWED: by how much chi^2 would be
+smaller still if it were the other way round, a disturbance that the thrust follows.
+"""
+
+
+@exact_kernel
+def weigh(residual, thrust, columns, weights, low, high, step, lags, evidence):
+    """Fill `evidence` (m, COLUMNS) from a window.
+
+    Args:
+        residual: r (k, 6), oldest first.
+        thrust: lagged thrusts (k, m), N.
+        columns: thruster matrix (6, m).
+        weights: 1 / sigma^2 (6,).
+        low, high: bounds (m,) of the lost shares.
+        step: onsets tried are this many ticks apart.
+        lags: least and greatest time, in ticks, by which thrust follows a disturbance.
+        evidence: (m, COLUMNS), written.
+    """
+    k, m = thrust.shape
+    total = 0.0
+    for c in range(6):
+        mean = 0.0
+        for t in range(k):
+            mean += residual[t, c]
+        mean /= k
+        for t in range(k):
+            total += weights[c] * (residual[t, c] - mean) ** 2
+    along = np.empty(k)
+    for i in range(m):
+        scale = most = 0.0
+        for c in range(6):
+            one = weights[c] * columns[c, i] ** 2
+            scale, most = scale + one, max(most, one)
+        for t in range(k):
+            along[t] = 0.0
+            for c in range(6):
+                along[t] += weights[c] * columns[c, i] * residual[t, c]
+            along[t] /= scale
+        _weigh_one(along, thrust, i, scale, low[i], high[i], step, total, evidence)
+        evidence[i, BESIDES] = 1.0 - most / scale
+        evidence[i, FOLLOWED] = _followed(along, thrust, i, scale, lags, evidence)
+
+
+@exact_inner
+def _weigh_one(along, thrust, i, scale, low, high, step, total, evidence):
+    """The best onset of thruster i: `along` (k,) is r in newtons of its thrust."""
+    k = along.shape[0]
+    mean = 0.0
+    for t in range(k):
+        mean += along[t]
+    mean /= k
+    evidence[i, GAIN] = 0.0
+    evidence[i, KIND] = NONE
+    evidence[i, INFORMATION], evidence[i, TOTAL] = 0.0, total / (6.0 * k)
+    count = ft = ff = ty = sy = 0.0  # sums after the onset: T, T^2, T y, y
+    for t in range(k - 1, -1, -1):
+        value, y = thrust[t, i], along[t] - mean
+        count += 1.0
+        ft += value
+        ff += value * value
+        ty += value * y
+        sy += y
+        if t % step or count < 4.0:
+            continue
+        tt = ff - ft * ft / k  # of the regressor with the window's mean taken out
+        if tt > 1e-9:
+            share = min(max(-ty / tt, low), high)
+            gain = -scale * (2.0 * share * ty + share * share * tt)
+            _keep(evidence, i, gain, total, k, share, 1.0 / np.sqrt(scale * tt), t, WEAK, 0.0)
+            if t == 0:
+                evidence[i, INFORMATION] = scale * tt
+        if t > 0:  # a constant from the start cannot be told from a disturbance
+            bb, tb = count - count * count / k, ft - ft * count / k
+            stuck = (sy + high * tb) / bb
+            gain = -scale * (high * high * tt + 2.0 * high * ty - bb * stuck * stuck)
+            _keep(evidence, i, gain, total, k, high, 1.0 / np.sqrt(scale * bb), t, STUCK, stuck)
+
+
+@exact_inner
+def _followed(along, thrust, i, scale, lags, evidence):
+    """Fall of chi^2 along b_i from the best fault to the best r(t - lag) = d - b_i T_i(t).
+
+    A controller answers a disturbance with the opposite thrust, a little later. What looks like
+    lost thrust is then ahead of it, whereas a fault is in step with the thrust.
+    """
+    if evidence[i, KIND] == NONE:
+        return 0.0
+    k, onset, stuck = along.shape[0], int(evidence[i, ONSET]), evidence[i, THRUST]
+    share, best = evidence[i, SHARE], -np.inf
+    for lag in range(lags[0], min(lags[1], k // 2) + 1):
+        fault = _spread(along, thrust, i, 0, lag, share, onset, stuck)
+        follows = _spread(along, thrust, i, lag, lag, 1.0, 0, 0.0)
+        best = max(best, scale * (fault - follows))
+    return best
+
+
+@exact_inner
+def _spread(along, thrust, i, lag, first, share, onset, stuck):
+    """Squared sum about its mean of r(t - lag) + share (T(t) - stuck), from tick `first` on."""
+    total = squares = 0.0
+    for t in range(first, along.shape[0]):
+        value = along[t - lag]
+        if t >= onset:
+            value += share * (thrust[t, i] - stuck)
+        total, squares = total + value, squares + value * value
+    return squares - total * total / (along.shape[0] - first)
+
+
+@exact_inner
+def _keep(evidence, i, gain, total, k, share, sigma, onset, kind, stuck):
+    """Note the better explanation; that of a stuck thruster has one parameter more to pay for."""
+    price = 0.0 if kind == WEAK else np.log(6.0 * k)
+    if gain - price <= evidence[i, GAIN]:
+        return
+    evidence[i, GAIN] = gain - price
+    evidence[i, LEFT] = (total - gain) / (6.0 * k)
+    evidence[i, SHARE], evidence[i, SIGMA] = share, sigma
+    evidence[i, ONSET], evidence[i, KIND] = onset, kind
+    evidence[i, THRUST] = stuck
