@@ -2,8 +2,8 @@
 
 `python -m uvms_bringup.field [--campaign NAME] [--select PATTERN] [--workers N] [--output DIR]
 [--page FILE]`, or with `--from DIR` only the table, of a campaign that has run. `control_study`
-has its table in docs/control.md; any other campaign has none unless `--page` names one. The exit code is 0 whether cases pass or
-not: the field measures, and its table shows what does not pass.
+has its table in docs/control.md; any other campaign has none unless `--page` names one. The exit
+code is 0 whether cases pass or not: the field measures, and its table shows what does not pass.
 """
 
 import json
