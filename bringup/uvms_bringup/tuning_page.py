@@ -16,7 +16,7 @@ CONTROL_PREFIX = "control."
 ROTATIONS = ("roll", "pitch", "yaw")
 HEADER = (
     f"  {'axis':6}{'inertia':>13}{'righting':>14}{'authority':>11}{'lag':>8}{'bandwidth':>12}"
-    f"{'damping':>9}{'observer':>12}{'delay margin':>19}{'gain margin':>13}{'noise':>8}"
+    f"{'damping':>9}{'observer':>13}{'delay margin':>23}{'gain margin':>13}{'noise':>9}"
     f"{'full at':>11}   limited by"
 )
 
@@ -57,12 +57,12 @@ def _lines(found: Mapping[str, Any]) -> Iterator[str]:
     for name, axis in found["axes"].items():
         yield _line(name, axis, len(found["postures"]) > 1)
     for name in found["left_to_the_hull"]:
-        yield f"  {name:6}left to the hull: the thrusters have no authority along it"
+        yield f"  {name:6}left to the hull: the thrusters cannot control it beside the others"
 
 
 def _line(name: str, axis: Mapping[str, Any], several: bool) -> str:
     turns = name in ROTATIONS
-    delay = f"{_number(axis['delay_margin_s'])} s ({_number(axis['delay_margin_periods'])} ticks)"
+    delay = f"{_number(axis['delay_margin_s'])} s ({axis['delay_margin_periods']:.1f} periods)"
     why = axis["limited_by"] + (f" (arm {axis['posture']})" if several else "")
     cells = (
         f"{_number(axis['inertia'])} {'kg m²' if turns else 'kg'}:13",
@@ -71,10 +71,10 @@ def _line(name: str, axis: Mapping[str, Any], several: bool) -> str:
         f"{_number(axis['thruster_lag_s'])} s:8",
         f"{_number(axis['bandwidth_rad_s'])} rad/s:12",
         f"{axis['damping_ratio']:.2f}:9",
-        f"{_number(axis['observer_bandwidth_rad_s'])} rad/s:12",
-        f"{delay}:19",
+        f"{_number(axis['observer_bandwidth_rad_s'])} rad/s:13",
+        f"{delay}:23",
         f"{_number(axis['gain_margin'])}:13",
-        f"{100.0 * axis['noise_share']:.2g} %:8",
+        f"{100.0 * axis['noise_share']:.2g} %:9",
         f"{_number(axis['error_at_full_authority'])} {'rad' if turns else 'm'}:11",
     )
     texts = (cell.rsplit(":", 1) for cell in cells)

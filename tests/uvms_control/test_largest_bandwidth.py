@@ -35,7 +35,7 @@ def vehicle_of(name):
     return load_vehicle(vehicle_path(name))
 
 
-@pytest.mark.parametrize("axis", [FREE, HULL, replace(FREE, lag=0.02), replace(HULL, lag=0.2)])
+@pytest.mark.parametrize("axis", [FREE, HULL, replace(FREE, lag=0.02), replace(HULL, lag=0.05)])
 def test_the_loop_keeps_its_limits_and_would_not_with_more(axis):
     limits = Limits()
     found = largest_bandwidth(axis, limits)
