@@ -44,16 +44,21 @@ def test_it_is_the_plants_loaded_vehicle(name):
 
 @pytest.mark.parametrize("name", VEHICLES)
 def test_its_forces_are_the_difference_that_it_makes(name):
+    """At p = 0, and what is odd in p: the moments of inertia m p p^T are even."""
     vehicle, rng = VEHICLES[name], np.random.default_rng(2)
     model, mass, weight = build_model(vehicle), 1.3, 4.2
     for _ in range(5):
         state = motion(vehicle.n_joints, rng)
-        difference = inverse_dynamics(model, *state) - inverse_dynamics(
-            with_payload(model, mass, weight, PLACE), *state
-        )
-        columns = payload_forces(model, *state, PLACE)
-        found = columns @ np.array([weight, *(weight * PLACE), mass])
-        np.testing.assert_allclose(found, difference, rtol=1e-9, atol=1e-8)
+
+        def forces(place, state=state):
+            loaded = with_payload(model, mass, weight, place)
+            return inverse_dynamics(model, *state) - inverse_dynamics(loaded, *state)
+
+        columns = payload_forces(model, *state)
+        at_tool = columns[:, [0, 4]] @ np.array([weight, mass])
+        odd = columns[:, [1, 2, 3, 5, 6, 7]] @ np.r_[weight * PLACE, mass * PLACE]
+        np.testing.assert_allclose(at_tool, forces(np.zeros(3)), rtol=1e-9, atol=1e-8)
+        np.testing.assert_allclose(odd, 0.5 * (forces(PLACE) - forces(-PLACE)), atol=1e-8)
 
 
 def test_nothing_is_the_model_itself():

@@ -7,7 +7,7 @@ import numpy as np
 from uvms_control.arm_law import ArmLaw
 from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
-from uvms_control.design.gains import VehicleGains, vehicle_gains
+from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
 from uvms_control.reference import ReferenceSample, sample_ahead, sample_reference
 from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
@@ -28,9 +28,6 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import build_model, hull_bias_wrench, mass_matrix
-
-ATTITUDE = slice(3, 5)
-"""Roll and pitch, along which the arm's weight acts."""
 
 
 class Controller:
@@ -65,7 +62,7 @@ class Controller:
         self._gains = vehicle_gains(self._vehicle, period, self._config.gains)
         whole = self._gains.stiffness + self._gains.righting
         self._monitor = StabilityMonitor(whole, self._gains.damping)
-        self._lead = to_nanoseconds(float(np.max(self._axes.lag[ATTITUDE])) + 0.5 * period)
+        self._lead = to_nanoseconds(thrust_delay(self._axes, period, self._config.gains))
 
     def reset(self) -> None:
         """Return to the state before the first step."""
@@ -105,13 +102,14 @@ class Controller:
         mass = mass_matrix(self._model, joints.position)
         nu_dot, wrench = np.zeros(6), np.zeros(6)
         if self._config.enabled:
+            inertia = np.ascontiguousarray(mass[:6, :6])
             acts = np.zeros(6) if disturbance is None else disturbance.wrench
             known = acts if self._config.observer else np.zeros(6)
             tracking, wrench = self._vehicle_wrench(
-                odometry, joints, mass[:6, :6], known, desired, reference, dt
+                odometry, joints, inertia, known, desired, reference, dt
             )
             nu_dot = tracking.acceleration
-            self.stability = self._judge(odometry, mass[:6, :6], acts, tracking, wrench)
+            self.stability = self._judge(odometry, inertia, acts, tracking, wrench)
         effort = self.arm.step(odometry, joints, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 

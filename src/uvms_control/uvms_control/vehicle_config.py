@@ -32,6 +32,13 @@ class GainConfig(Config):
         le=20.0,
         description="further delay that the loop must bear, in control periods",
     )
+    lag_compensation: float = Field(
+        default=1.0,
+        ge=0.0,
+        le=1.0,
+        description="share of the thrusters' lag that the allocator makes up for, as"
+        " allocation.lag_compensation says; the gains are laid out for it",
+    )
     noise_share: float = Field(
         default=0.05,
         gt=0.0,

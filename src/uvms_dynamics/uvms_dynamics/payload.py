@@ -4,9 +4,8 @@ A payload is a point mass here: virtual mass m (with the water that it carries a
 water w, at p in the tool frame. Its own inertia about p is left out: of a sphere of a litre that is
 2 parts in a thousand of what its mass has at a lever of 0.5 m.
 
-Its forces are linear in (w, w p, m) where p in the mass's column is given:
-
-    F = w down + p x w down (weight)  -  m times the acceleration of the point p (inertia).
+Its forces are linear in theta = (w, w p, m, m p), but for its moments of inertia about the tool's
+origin, m p p^T, which are left out of `payload_forces` too: p is small beside the arm.
 """
 
 import numpy as np
@@ -43,8 +42,8 @@ from uvms_dynamics.kernels.spatial import (
 from uvms_dynamics.model import Model
 from uvms_dynamics.model.vehicle_table import packed
 
-COLUMNS = 5
-"""Of `payload_forces`: w, then w p (3), then m."""
+COLUMNS = 8
+"""Of `payload_forces`: w, w p (3), m, m p (3)."""
 
 
 def with_payload(model: Model, mass: float, weight: float, position: Array) -> Model:
@@ -81,18 +80,18 @@ def _point_mass(mass: float, place: Array) -> Array:
 
 
 @kernel
-def payload_forces(model, quat, nu, nu_dot, q, q_dot, q_ddot, position):
-    """Generalized force (6+n, 5) that a payload exerts ON vehicle and joints, by (w, w p, m).
+def payload_forces(model, quat, nu, nu_dot, q, q_dot, q_ddot):
+    """Generalized force (6+n, 8) that a payload exerts ON vehicle and joints, by (w, w p, m, m p).
 
-    Body wrench, then joint torques; p in the tool frame. The mass is at `position` (3,), tool
-    frame. Arguments as in `inverse_dynamics`, in water at rest. Each column is what is unexplained
-    of the motion if the model lacks that payload: minus what it adds to `inverse_dynamics`.
+    Body wrench, then joint torques; p in the tool frame. Arguments as in `inverse_dynamics`, in
+    water at rest. theta times it is what is unexplained of the motion if the model lacks that
+    payload: minus what it adds to `inverse_dynamics`.
     """
     check_quaternion(quat)
     check_motion(nu, nu_dot)
     check_joints(model, q, q_dot, q_ddot)
     n = q.shape[0]
-    work, out = make_workspace(model), np.empty((6 + n, 5))
+    work, out = make_workspace(model), np.empty((6 + n, 8))
     down = to_hull(model, down_in_body(quat[0], quat[1], quat[2], quat[3]))
     v, a = into_hull(model, spatial_at(nu, FIRST)), into_hull(model, spatial_at(nu_dot, FIRST))
     for i in range(1, n + 1):
@@ -103,28 +102,27 @@ def payload_forces(model, quat, nu, nu_dot, q, q_dot, q_ddot, position):
         x0, x1, y0, y1 = velocity_product(v, q_dot[i - 1])
         a = (a0 + x0, a1 + x1, a2, b0 + y0, b1 + y1, b2 + q_ddot[i - 1])
     tool = load3(model, n + 1, TOOL_POSITION)
+    push = _minus_acceleration(v, a, tool, 1.0)
     _carry(model, work, n, pair(down, cross(tool, down)), 0, out)
+    _carry(model, work, n, pair(push, cross(tool, push)), 4, out)
+    none = (0.0, 0.0, 0.0)
     for k in range(3):
         c = TOOL_ROTATION + k
         axis = model[n + 1, c], model[n + 1, c + 3], model[n + 1, c + 6]
-        _carry(model, work, n, pair((0.0, 0.0, 0.0), cross(axis, down)), 1 + k, out)
-    x, y, z = position[0], position[1], position[2]
-    r = TOOL_ROTATION
-    f = model[n + 1]
-    place = add_vectors(
-        tool,
-        (
-            f[r] * x + f[r + 1] * y + f[r + 2] * z,
-            f[r + 3] * x + f[r + 4] * y + f[r + 5] * z,
-            f[r + 6] * x + f[r + 7] * y + f[r + 8] * z,
-        ),
-    )
-    w = angular(v)
-    there = add_vectors(linear(v), cross(w, place))
-    push = add_vectors(add_vectors(linear(a), cross(angular(a), place)), cross(w, there))
-    push = -push[0], -push[1], -push[2]
-    _carry(model, work, n, pair(push, cross(place, push)), 4, out)
+        turning = _minus_acceleration(v, a, axis, 0.0)
+        moment = add_vectors(cross(axis, push), cross(tool, turning))
+        _carry(model, work, n, pair(none, cross(axis, down)), 1 + k, out)
+        _carry(model, work, n, pair(turning, moment), 5 + k, out)
     return out
+
+
+@kernel
+def _minus_acceleration(v, a, place, share):
+    """Minus the acceleration of a point of a body; of it, `share` of that of the origin."""
+    w = angular(v)
+    there = add_vectors(cross(angular(a), place), cross(w, cross(w, place)))
+    x, y, z = add_vectors(linear(a), cross(w, linear(v)))
+    return -there[0] - share * x, -there[1] - share * y, -there[2] - share * z
 
 
 @kernel

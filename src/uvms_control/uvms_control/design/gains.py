@@ -11,7 +11,7 @@ from math import sqrt
 
 import numpy as np
 
-from uvms_control.controlled_axes import AXES
+from uvms_control.controlled_axes import AXES, ControlledAxes
 from uvms_control.design.axis import Axis, AxisGains
 from uvms_control.design.bandwidth import AxisDesign, Limits, largest_bandwidth
 from uvms_control.design.conditions import require_stable
@@ -21,6 +21,8 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.plausible.stability import postures
 
+ATTITUDE = slice(3, 5)
+"""Roll and pitch, along which the arm's weight acts."""
 ENGAGES_IN = 2.0
 """The feedback comes up within so many times 1 / bandwidth."""
 
@@ -69,6 +71,16 @@ def vehicle_gains(vehicle: Vehicle, period: float, config: GainConfig) -> Vehicl
     )
 
 
+def thrust_delay(axes: ControlledAxes, period: float, config: GainConfig) -> float:
+    """How long after a tick the thrust of its command comes on average, s, in roll and pitch.
+
+    What the allocator leaves of the lag, and half a period, as the command is held; lag that it
+    makes up for is made up for at the end of the period, which is another half.
+    """
+    share, lag = config.lag_compensation, float(np.max(axes.lag[ATTITUDE]))
+    return (1.0 - share) * lag + 0.5 * (1.0 + share) * period
+
+
 def axis_designs(
     vehicle: Vehicle, period: float, config: GainConfig, angles: Sequence[Array] | None = None
 ) -> tuple[AxisDesign | None, ...]:
@@ -78,7 +90,8 @@ def axis_designs(
     """
     angles = [q for _, q in postures(vehicle)] if angles is None else angles
     limits = Limits(delay_periods=config.delay_margin_periods, noise_share=config.noise_share)
-    by_posture = [vehicle_axes(vehicle, q, Timing(period)) for q in angles]
+    timing = Timing(period, lag_compensated=config.lag_compensation)
+    by_posture = [vehicle_axes(vehicle, q, timing) for q in angles]
     return tuple(
         _least([_design(each, k, limits, config) for each in axes])
         for k, axes in enumerate(zip(*by_posture, strict=True))
