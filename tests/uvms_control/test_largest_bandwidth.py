@@ -149,7 +149,12 @@ def test_every_vehicle_keeps_the_conditions_with_the_defaults(name, law):
     [
         (
             Controller,
-            {"gains": {"bandwidth_rad_s": (2.0, 2.0, 30.0, 2.0, 2.0, 2.0)}},
+            {
+                "gains": {
+                    "bandwidth_rad_s": (2.0, 2.0, 30.0, 2.0, 2.0, 2.0),
+                    "lag_compensation": 0.0,
+                }
+            },
             "control.gains.bandwidth_rad_s of heave: 30 rad/s makes the loop unstable, with a"
             " control period of 0.05 s and thrusters with 0.12 s of lag; at most 8.67 rad/s",
         ),
