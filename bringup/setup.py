@@ -57,6 +57,7 @@ setup(
             "replay = uvms_bringup.commands.replay:COMMAND",
             "run = uvms_bringup.commands.run:COMMAND",
             "simulate = uvms_bringup.commands.simulate:COMMAND",
+            "tune = uvms_bringup.commands.tune:COMMAND",
             "vehicle = uvms_bringup.commands.vehicle:COMMAND",
         ],
     },

@@ -1,9 +1,9 @@
 """`make field`: runs the trial field and writes its table into docs/trial-field.md.
 
-`python -m uvms_bringup.field [--select PATTERN] [--workers N] [--output DIR] [--page FILE]`, or
-with
-`--from DIR` only the table, of a campaign that has run. The exit code is 0 whether cases pass or
-not: the field measures, and its table shows what does not pass.
+`python -m uvms_bringup.field [--campaign NAME] [--select PATTERN] [--workers N] [--output DIR]
+[--page FILE]`, or with `--from DIR` only the table, of a campaign that has run. `control_study`
+has its table in docs/control.md; any other campaign has none unless `--page` names one. The exit
+code is 0 whether cases pass or not: the field measures, and its table shows what does not pass.
 """
 
 import json
@@ -25,18 +25,20 @@ from uvms_bringup.session import git_revision
 from uvms_core.errors import UvmsError
 
 CAMPAIGN = "trial_field"
-PAGE = Path("docs/trial-field.md")
+PAGES = {CAMPAIGN: Path("docs/trial-field.md"), "control_study": Path("docs/control.md")}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run the field, or take its results, and write the page; 2 where that is not possible."""
     options = _parser().parse_args(arguments)
+    if options.page is None:
+        options.page = str(PAGES.get(options.campaign, ""))
     try:
         summary = _taken(Path(options.taken)) if options.taken else _run(options)
         if summary is None:
             return 1
         if options.page:
-            content = table(summary, options.made_by, git_revision(), date.today())
+            content = table(summary, _command(options), git_revision(), date.today())
             write_page(Path(options.page), content)
             print(f"table: {options.page}")
     except (UvmsError, OSError) as fault:
@@ -56,9 +58,14 @@ def _parser() -> ArgumentParser:
     add("--output", metavar="DIR", help="folder of the results (default: runs/CAMPAIGN-TIME)")
     add("--resume", action="store_true", help="go on with the field in --output DIR")
     add("--from", dest="taken", metavar="DIR", help="results that are there: run nothing")
-    add("--page", default=str(PAGE), metavar="FILE", help="page that gets the table")
-    parser.set_defaults(made_by="make field")
+    add("--page", metavar="FILE", help="page that gets the table (default: the campaign's own)")
     return parser
+
+
+def _command(options: Namespace) -> str:
+    """The command that makes the page again."""
+    chosen = "" if options.campaign == CAMPAIGN else f' ARGS="--campaign {options.campaign}"'
+    return f"make field{chosen}"
 
 
 def _run(options: Namespace) -> dict[str, Any] | None:

@@ -26,7 +26,7 @@ def show_vehicle(name: str, settings: Sequence[str], as_json: bool) -> int:
         data = {"errors": [], "warnings": list(found.warnings), "notes": list(found.notes)}
         summary = vehicle_summary(found.vehicle)
     if as_json:
-        print(json.dumps(_finite(data | {"summary": summary}), indent=2))
+        print(json.dumps(finite(data | {"summary": summary}), indent=2))
     else:
         _print(data, summary)
     return 2 if data["errors"] else 0
@@ -41,12 +41,12 @@ def _setting(text: str) -> tuple[str, Any]:
     return path.removeprefix(VEHICLE_PREFIX), parse_yaml(value, what, VehicleFileError)
 
 
-def _finite(value: Any) -> Any:
-    """The same without what JSON has no number for: null in the place of infinity."""
+def finite(value: Any) -> Any:
+    """Plain data without what JSON has no number for: None in the place of infinity."""
     if isinstance(value, dict):
-        return {name: _finite(each) for name, each in value.items()}
+        return {name: finite(each) for name, each in value.items()}
     if isinstance(value, list):
-        return [_finite(each) for each in value]
+        return [finite(each) for each in value]
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 

@@ -23,6 +23,8 @@ NAMES = {
     "end_effector_tracking_error_m.rms": "tool off its path (estimate), rms, by",
     "end_effector_error_m.max": "tool off its path by",
     "navigation_error_m.max": "estimate off by",
+    "stability.condition_holds": "share of ticks with the condition below (29)",
+    "stability.lyapunov_falls": "share of ticks in which V does not grow",
     "self_disturbance.moment_rms_nm": "self-disturbance, rms",
 }
 """Fields of the summary in words."""

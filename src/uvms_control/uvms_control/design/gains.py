@@ -5,6 +5,7 @@ arm in any of the postures of the vehicle file: the posture that allows least de
 accelerations, and the law multiplies them by M(q): they mean the same whatever the arm does.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import sqrt
 
@@ -81,12 +82,16 @@ def thrust_delay(axes: ControlledAxes, period: float, config: GainConfig) -> flo
 
 
 def axis_designs(
-    vehicle: Vehicle, period: float, config: GainConfig
+    vehicle: Vehicle, period: float, config: GainConfig, angles: Sequence[Array] | None = None
 ) -> tuple[AxisDesign | None, ...]:
-    """The design of each axis, in the posture that allows least; None: left to the hull."""
+    """The design of each axis, in the posture that allows least; None: left to the hull.
+
+    `angles`: joint angles (n,) rad of the postures; None: all of the vehicle file.
+    """
+    angles = [q for _, q in postures(vehicle)] if angles is None else angles
     limits = Limits(delay_periods=config.delay_margin_periods, noise_share=config.noise_share)
     timing = Timing(period, lag_compensated=config.lag_compensation)
-    by_posture = [vehicle_axes(vehicle, q, timing) for _, q in postures(vehicle)]
+    by_posture = [vehicle_axes(vehicle, q, timing) for q in angles]
     return tuple(
         _least([_design(each, k, limits, config) for each in axes])
         for k, axes in enumerate(zip(*by_posture, strict=True))
