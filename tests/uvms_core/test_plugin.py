@@ -25,7 +25,7 @@ class Filter(Protocol):
 class FilterConfig(PluginConfig):
     slot: ClassVar[Slot] = Slot(registry.CONTROLLERS, "law", Filter)
 
-    law: str = Field("s_surface", description="of the test")
+    law: str = Field("default", description="of the test")
     limit: float = 3.0
 
 
@@ -180,7 +180,7 @@ def test_a_part_without_parameters_takes_none():
 @pytest.mark.parametrize("name", ["pid", "my_parts", "my_parts:", ":Good", "my parts:Good", ""])
 def test_an_unknown_name_lists_the_choices(name):
     with pytest.raises(
-        ValueError, match=r"is unknown; choose one of .*s_surface.*my_module:MyClass"
+        ValueError, match=r"is unknown; choose one of .*default, paper.*my_module:MyClass"
     ):
         FilterConfig(law=name)
 
