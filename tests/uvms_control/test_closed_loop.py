@@ -124,7 +124,7 @@ def test_what_the_model_does_not_know_is_survived(unknown, law):
 def test_sensor_noise_is_not_amplified(law, joints):
     """The vehicle keeps still within the noise, which is white here: worse than a filter's.
 
-    The arm, rad, feels what the law makes of it: the default law's gains are ten times as large.
+    The arm, rad, feels what the law makes of it: the default law is stiffer by 5 to 20 times.
     """
     rng = np.random.default_rng(2)
 
