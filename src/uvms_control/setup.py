@@ -39,7 +39,8 @@ setup(
             "s_surface = uvms_control.paper_controller:PaperController",
         ],
         "uvms.allocators": [
-            "weighted_least_squares = uvms_control.allocation:ThrustAllocator",
+            "lexicographic = uvms_control.allocation:ThrustAllocator",
+            "weighted_least_squares = uvms_control.allocation:WeightedAllocator",
         ],
         "uvms.kernels": ["uvms_control = uvms_control"],
     },

@@ -34,8 +34,11 @@ setup(
             "disturbance_observer = uvms_observer.nodes.disturbance_observer:DisturbanceObserverNode",
         ],
         "uvms.observers": [
-            "momentum_residual = uvms_observer.disturbance:DisturbanceObserver",
+            "combined = uvms_observer.disturbance:CombinedObserver",
+            "momentum = uvms_observer.disturbance:DisturbanceObserver",
+            "momentum_residual = uvms_observer.disturbance.observer:FormerObserver",
             "none = uvms_observer.disturbance.none:NoObserver",
+            "paper = uvms_observer.disturbance:ModelObserver",
         ],
         "uvms.navigation_filters": ["error_state_ekf = uvms_observer.navigation:NavigationFilter"],
         "uvms.measurements": [

@@ -1,6 +1,6 @@
 """Vehicle and arm control, and thrust allocation, for an underwater vehicle with an arm."""
 
-from uvms_control.allocation import ThrustAllocator
+from uvms_control.allocation import ThrustAllocator, WeightedAllocator
 from uvms_control.arm_controller import ArmController
 from uvms_control.config import (
     AllocatorConfig,
@@ -39,6 +39,7 @@ __all__ = [
     "TrackingError",
     "VehicleControlConfig",
     "VehicleController",
+    "WeightedAllocator",
     "lyapunov",
     "sample_reference",
     "sigmoid",

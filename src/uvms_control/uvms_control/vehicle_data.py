@@ -21,3 +21,8 @@ def thruster_limits(vehicle: Vehicle) -> tuple[Array, Array]:
 def least_thrusts(vehicle: Vehicle) -> Array:
     """Smallest thrusts but none (2, m), astern and ahead, in N; 0 where there is no gap."""
     return np.array([part.least_n for part in vehicle.thrusters]).T
+
+
+def thruster_lags(vehicle: Vehicle) -> Array:
+    """Time constants of the thrusters' first-order lag (m,) in s."""
+    return np.array([part.time_constant_s for part in vehicle.thrusters])

@@ -10,7 +10,7 @@ origin, m p p^T, which are left out of `payload_forces` too: p is small beside t
 
 import numpy as np
 
-from uvms_core.signals import Array
+from uvms_core.signals import Array, Payload
 from uvms_dynamics.kernels import layout
 from uvms_dynamics.kernels.jit import kernel
 from uvms_dynamics.kernels.layout import FIRST, HULL, JOINTS, TOOL_POSITION, TOOL_ROTATION
@@ -44,6 +44,11 @@ from uvms_dynamics.model.vehicle_table import packed
 
 COLUMNS = 8
 """Of `payload_forces`: w, w p (3), m, m p (3)."""
+
+NOTICEABLE = 0.01
+"""Share by which weight or mass may change before a model is made anew."""
+NOTICEABLE_SHIFT_M = 0.002
+"""Likewise of the position, m."""
 
 
 def with_payload(model: Model, mass: float, weight: float, position: Array) -> Model:
@@ -134,3 +139,17 @@ def _carry(model, work, n, force, column, out):
     force = into_body(model, force)
     for k in range(6):
         out[k, column] = force[k]
+
+
+def differs(payload: Payload, other: Payload) -> bool:
+    """Whether a payload differs from another so much that a model with it is to be made anew."""
+    if payload.held != other.held:
+        return True
+    if not payload.held:
+        return False
+    shift = np.abs(payload.position - other.position).max()
+    return bool(
+        abs(payload.weight - other.weight) > NOTICEABLE * abs(other.weight)
+        or abs(payload.mass - other.mass) > NOTICEABLE * abs(other.mass)
+        or shift > NOTICEABLE_SHIFT_M
+    )

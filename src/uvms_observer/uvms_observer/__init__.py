@@ -1,12 +1,20 @@
 """Navigation filter and disturbance observer of the vehicle-manipulator system."""
 
-from uvms_observer.disturbance import DisturbanceObserver, ObserverConfig
+from uvms_observer.disturbance import (
+    CombinedObserver,
+    DisturbanceObserver,
+    ModelObserver,
+    ObserverConfig,
+    external_bandwidth,
+)
 from uvms_observer.errors import NotAlignedError, ObserverError
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig, NavigationFilter
 
 __all__ = [
+    "CombinedObserver",
     "DisturbanceObserver",
+    "ModelObserver",
     "NavigationConfig",
     "NavigationEstimator",
     "NavigationFilter",
@@ -14,4 +22,5 @@ __all__ = [
     "ObserverConfig",
     "ObserverError",
     "ObserverLaw",
+    "external_bandwidth",
 ]

@@ -11,7 +11,8 @@ command near the middle of a gap would otherwise switch them at every tick.
 import numpy as np
 
 from uvms_control.allocation.box_qp import solve_from
-from uvms_control.allocation.least_squares import BoundedLeastSquares
+from uvms_control.allocation.levels import solve_levels
+from uvms_control.allocation.solver import Solver
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
@@ -32,10 +33,16 @@ class ThrustGap:
         least: smallest thrusts but none (2, m), N, astern (<= 0) and ahead (>= 0).
     """
 
-    def __init__(self, solver: BoundedLeastSquares, least: Array) -> None:
+    def __init__(self, solver: Solver, least: Array) -> None:
         self._solver = solver
         self._tables = (*solver.tables, np.ascontiguousarray(least, dtype=np.float64))
         self.reset()
+
+    def of(self, solver: Solver) -> "ThrustGap":
+        """The same for a new solver; the thrusters that turn go on turning."""
+        changed = ThrustGap(solver, self._tables[-1])
+        changed._turns = self._turns
+        return changed
 
     def reset(self) -> None:
         """Forget which thrusters turn."""
@@ -48,8 +55,8 @@ class ThrustGap:
         """
         solver, found = self._solver, thrust.copy()
         steps = leave_out(
-            self._tables, solver.gradient(tau), tau, lower, upper,
-            *solver.warm_start, solver.max_steps, self._turns, found,
+            self._tables, *solver.problem(tau), tau, lower, upper, solver.max_steps, self._turns,
+            found,
         )  # fmt: skip
         if steps < 0:
             solver.fail(tau)
@@ -57,19 +64,19 @@ class ThrustGap:
 
 
 @exact_kernel
-def leave_out(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust):
+def leave_out(tables, weighted, levels, tau, lower, upper, max_steps, turns, thrust):
     """Move `thrust` (m,) out of the gaps and note in `turns` (m,) which thrusters then turn.
 
-    `tables` are those of the solver and the least thrusts, `g` (m,) its gradient of the wrench
-    `tau` (6,), `u` and `state` (m,) its warm start, which is spent. Returns a negative number
-    where the solver fails.
+    `tables` are those of the solver and the least thrusts. The problem that is solved again for the
+    wrench `tau` (6,) is either the `weighted` one or that in `levels`, the other is None. Returns a
+    negative number where the solver fails.
     """
-    limits, least, steps = tables[3], tables[4], 0
+    limits, least, steps = tables[2], tables[3], 0
     if _nearest_edge(limits, least, thrust) >= 0:
         rounded = np.empty_like(thrust)
         for i in range(thrust.size):
             rounded[i] = _rounded(least, thrust[i], i)
-        steps = _one_by_one(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust)
+        steps = _one_by_one(tables, weighted, levels, tau, lower, upper, max_steps, turns, thrust)
         if _is_better(tables, tau, turns, thrust, rounded):
             _copy_into(thrust, rounded)
     for i in range(thrust.size):
@@ -77,6 +84,27 @@ def leave_out(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust):
         if not turns[i]:
             thrust[i] = 0.0
     return steps
+
+
+@exact_inner
+def _solve(weighted, levels, low, high, limits, max_steps, found):
+    """Thrusts (m,) N within the bounds into `found`; negative where the solver fails."""
+    low_share, high_share, steps = low / limits, high / limits, 0
+    if weighted is not None:  # the compiler leaves out the branch of the one that is None
+        hessian, g, u, state = weighted
+        steps = solve_from(hessian, g, low_share, high_share, u, state, max_steps)
+        _bounded(u, limits, low, high, found)
+    if levels is not None:
+        rows, ends, target, u, work, whole = levels
+        steps = solve_levels(rows, ends, target, low_share, high_share, u, work, whole, max_steps)
+        _bounded(u, limits, low, high, found)
+    return steps
+
+
+@exact_inner
+def _bounded(u, limits, low, high, found):
+    for k in range(found.size):
+        found[k] = min(max(u[k] * limits[k], low[k]), high[k])
 
 
 @exact_inner
@@ -114,32 +142,29 @@ def _nearest_edge(limits, least, thrust):
 
 
 @exact_inner
-def _one_by_one(tables, g, tau, lower, upper, u, state, max_steps, turns, thrust):
+def _one_by_one(tables, weighted, levels, tau, lower, upper, max_steps, turns, thrust):
     """Decide one thruster after the other, in place; negative where the solver fails."""
-    limits, least = tables[3], tables[4]
+    limits, least = tables[2], tables[3]
     low, high = lower.copy(), upper.copy()
     for _ in range(thrust.size):
         i = _nearest_edge(limits, least, thrust)
         if i < 0:
             break
-        steps = _decide(tables, g, tau, low, high, u, state, max_steps, turns, thrust, i)
+        steps = _decide(tables, weighted, levels, tau, low, high, max_steps, turns, thrust, i)
         if steps < 0:
             return steps
     return 0
 
 
 @exact_inner
-def _decide(tables, g, tau, low, high, u, state, max_steps, turns, thrust, i):
+def _decide(tables, weighted, levels, tau, low, high, max_steps, turns, thrust, i):
     """Set thruster i to none or to its edge, which becomes both its bounds, and solve again."""
-    hessian, limits = tables[0], tables[3]
-    edge, stopped = _edge(tables[4], thrust[i], i), np.empty_like(thrust)
+    edge, stopped = _edge(tables[3], thrust[i], i), np.empty_like(thrust)
     for value, found in ((0.0, stopped), (edge, thrust)):
         low[i] = high[i] = value
-        steps = solve_from(hessian, g, low / limits, high / limits, u, state, max_steps)
+        steps = _solve(weighted, levels, low, high, tables[2], max_steps, found)
         if steps < 0:
             return steps
-        for k in range(thrust.size):
-            found[k] = min(max(u[k] * limits[k], low[k]), high[k])
     at_none, at_edge = _error(tables, tau, stopped), _error(tables, tau, thrust)
     if turns[i]:
         stops = at_none < BETTER * at_edge - ALIKE
@@ -162,8 +187,8 @@ def _is_better(tables, tau, turns, one, two):
     """Whether the second is clearly better, or as good and the thrusters turn as they did."""
     keeps_one, keeps_two = True, True
     for i in range(turns.size):
-        keeps_one = keeps_one and _is_turning(tables[3], one[i], i) == turns[i]
-        keeps_two = keeps_two and _is_turning(tables[3], two[i], i) == turns[i]
+        keeps_one = keeps_one and _is_turning(tables[2], one[i], i) == turns[i]
+        keeps_two = keeps_two and _is_turning(tables[2], two[i], i) == turns[i]
     first, second = _error(tables, tau, one), _error(tables, tau, two)
     if keeps_two and not keeps_one:
         return not first < BETTER * second - ALIKE
@@ -173,7 +198,7 @@ def _is_better(tables, tau, turns, one, two):
 @exact_inner
 def _error(tables, tau, thrust):
     """Weighted squared error of the wrench of thrusts (m,) N, as a share of the authority."""
-    matrix, row_scale, total = tables[1], tables[2], 0.0
+    matrix, row_scale, total = tables[0], tables[1], 0.0
     for row in range(6):
         missing = -tau[row]
         for i in range(thrust.size):

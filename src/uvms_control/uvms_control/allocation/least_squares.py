@@ -7,7 +7,7 @@ thruster, so that newtons and newton metres compare, the weights W are free of u
 weighs a share of thrust against a share of authority.
 """
 
-from typing import NoReturn
+from typing import Any, NoReturn
 
 import numpy as np
 
@@ -28,16 +28,25 @@ def box_of(limits: Array) -> Array:
 class BoundedLeastSquares:
     """Solver for one thruster layout; it remembers the last solution as its warm start."""
 
-    def __init__(self, matrix: Array, limits: Array, weights: Array, regularisation: float):
+    def __init__(
+        self,
+        matrix: Array,
+        limits: Array,
+        weights: Array,
+        regularisation: float,
+        authority: Array | None = None,
+    ):
         """`matrix` (6, m) wrench per newton, `weights` (6,) >= 0.
 
-        `limits` (m,) N > 0 in either direction, or (2, m) N astern (<= 0) and ahead (> 0).
+        `limits` (m,) N > 0 in either direction, or (2, m) N astern (<= 0) and ahead (> 0);
+        `authority` (6,) N and N m by which errors are compared, by default that of the matrix.
         """
         self.matrix = np.ascontiguousarray(matrix, dtype=np.float64)
         self.lower, self.upper = box_of(limits)
         self.limits = np.maximum(-self.lower, self.upper)
         self._low, self._high = self.lower / self.limits, self.upper / self.limits
-        authority = np.abs(self.matrix) @ self.limits
+        if authority is None:
+            authority = np.abs(self.matrix) @ self.limits
         self._row_scale = np.asarray(weights) / np.where(authority > 0.0, authority, 1.0)
         scaled = self._row_scale[:, None] * self.matrix * self.limits
         m = self.limits.size
@@ -52,14 +61,14 @@ class BoundedLeastSquares:
         self._state = np.zeros(self.limits.size, dtype=np.int64)
 
     @property
-    def warm_start(self) -> tuple[Array, Array]:
-        """Last solution and which bounds held it, copies."""
-        return self._u.copy(), self._state.copy()
+    def tables(self) -> tuple[Array, Array, Array]:
+        """Matrix (6, m), row scale (6,), limits (m,) N."""
+        return self.matrix, self._row_scale, self.limits
 
-    @property
-    def tables(self) -> tuple[Array, Array, Array, Array]:
-        """Hessian (m, m) in shares of the limits, matrix (6, m), row scale (6,), limits (m,) N."""
-        return self._hessian, self.matrix, self._row_scale, self.limits
+    def problem(self, tau: Array) -> tuple[Any, None]:
+        """The problem for the wrench `tau` (6,) as `solve_from` takes it: H, g, warm start."""
+        warm_start = self._u.copy(), self._state.copy()
+        return (self._hessian, self.gradient(tau), *warm_start), None
 
     def gradient(self, tau: Array) -> Array:
         """Gradient (m,) of the objective at no thrust, for the wrench `tau` (6,)."""

@@ -1,6 +1,17 @@
-"""The disturbance observer, eq. (21)."""
+"""Disturbance observers, from none to eq. (21) with external wrench and payload."""
 
-from uvms_observer.disturbance.observer import DisturbanceObserver
+from uvms_observer.disturbance.bandwidth import external_bandwidth
+from uvms_observer.disturbance.observer import (
+    CombinedObserver,
+    DisturbanceObserver,
+    ModelObserver,
+)
 from uvms_observer.disturbance.observer_config import ObserverConfig
 
-__all__ = ["DisturbanceObserver", "ObserverConfig"]
+__all__ = [
+    "CombinedObserver",
+    "DisturbanceObserver",
+    "ModelObserver",
+    "ObserverConfig",
+    "external_bandwidth",
+]

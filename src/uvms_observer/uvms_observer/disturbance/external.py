@@ -1,7 +1,6 @@
 """The external wrench: what acts on the vehicle besides model and thrusters.
 
-A residual of the generalized momentum p = M(q) zeta (De Luca and Mattone 2003), of which the
-vehicle's six rows are kept:
+A residual of the generalized momentum p = M(q) zeta (De Luca and Mattone 2003),
 
     r = K [p(t) - p(0) - integral (tau + what the model gives + r) dt], so that  r' = K (F_ext - r):
 
@@ -11,69 +10,102 @@ a signal. In steps of dt, with all states at the middle of the interval, the sam
     r += (1 - exp(-K dt)) (h(zeta, dzeta/dt) - tau - r),
 
 where h is inverse dynamics with the difference quotient as acceleration: M dzeta adds up to p
-again, since M at the middle of the step gives dp - dM zeta to second order. Currents, payloads,
-tethers and wrong parameters all end up in r.
-"""
+again, since M at the middle of the step gives dp - dM zeta to second order. Currents, tethers and
+wrong parameters all end up in the vehicle's six rows of r; the joints' rows show what acts on the
+arm, such as a payload.
 
-from typing import NamedTuple
+White noise of covariance S in zeta makes dp of neighbouring steps noisy by 2 M S M^T, but opposite
+in sign, so that with g = 1 - exp(-K dt) the estimate's variance is
+
+    diag(M S M^T) (g / dt)^2 2 / (2 - g),  close to  K^2 diag(M S M^T).
+"""
 
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics import Model, inverse_dynamics, joint_passive_torque, mass_matrix
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.payload import payload_forces
 
-
-class Moment(NamedTuple):
-    """Pose and motion of the system at one instant."""
-
-    quaternion: Array  # (4,)
-    nu: Array  # (6,)
-    q: Array  # (n,)
-    q_dot: Array  # (n,)
-
-
-class ExternalWrenchObserver:
-    """Estimate of the external wrench on the vehicle, body frame.
-
-    Args:
-        model: kernel tables of the vehicle.
-        bandwidth: K, rad/s.
-    """
-
-    def __init__(self, model: Model, bandwidth: float) -> None:
-        self._model = model
-        self._bandwidth = bandwidth
-        self.wrench = np.zeros(6)
-
-    def step(self, dt: float, before: Moment, now: Moment, thrust: Array) -> Array:
-        """Estimate (6,) after an interval of dt s with this mean thruster wrench (6,)."""
-        missing = unexplained_wrench(self._model, dt, tuple(before), tuple(now), thrust)
-        self.wrench = self.wrench - np.expm1(-self._bandwidth * dt) * (missing - self.wrench)
-        return self.wrench
+POSE = 4
+"""Of a moment (10 + 2 n,): quaternion (4), nu (6), q (n), q_dot (n) in one vector."""
+NU = POSE + 6
 
 
 @exact_kernel
-def unexplained_wrench(
-    model: Model, dt: float, first: tuple[Array, ...], last: tuple[Array, ...], thrust: Array
-) -> Array:
-    """Mean wrench (6,) over the interval that the motion needs beyond the thrusters' wrench.
+def unexplained_force(
+    model: Model, dt: float, before: Array, now: Array, thrust: Array, effort: Array
+) -> tuple[Array, Array]:
+    """Mean force (6+n,) over the interval beyond model and drives, and a payload's (6+n, 8).
 
-    `first` and `last` are the fields of the `Moment`s at its ends: plain tuples, which numba takes
-    apart in a fraction of the time.
+    Args:
+        model: without payload.
+        dt: length of the interval, s.
+        before, now: (10 + 2 n,) moments at its ends.
+        thrust: (6,) mean wrench of the thrusters.
+        effort: (n,) torques of the drives.
+
+    Returns:
+        What the motion needs beyond thrusters, drives and the joints' friction, and what a payload
+        would be of it, as of `payload_forces`.
     """
-    before, now = Moment(*first), Moment(*last)
-    quaternion = _mean(_same_sign(before.quaternion, now.quaternion), now.quaternion)
-    needed = inverse_dynamics(
-        model,
-        quaternion / np.sqrt(quaternion.dot(quaternion)),
-        _mean(before.nu, now.nu),
-        (now.nu - before.nu) / dt,
-        _mean(before.q, now.q),
-        _mean(before.q_dot, now.q_dot),
-        (now.q_dot - before.q_dot) / dt,
-    )
-    return needed[:6] - thrust
+    n = effort.shape[0]
+    quaternion = _mean(_same_sign(before[:POSE], now[:POSE]), now[:POSE])
+    quaternion = quaternion / np.sqrt(quaternion.dot(quaternion))
+    nu, nu_dot = _mean(before[POSE:NU], now[POSE:NU]), (now[POSE:NU] - before[POSE:NU]) / dt
+    q = _mean(before[NU : NU + n], now[NU : NU + n])
+    q_dot = _mean(before[NU + n :], now[NU + n :])
+    q_ddot = (now[NU + n :] - before[NU + n :]) / dt
+    force = inverse_dynamics(model, quaternion, nu, nu_dot, q, q_dot, q_ddot)
+    force[:6] -= thrust
+    force[6:] -= effort + joint_passive_torque(model, q, q_dot)
+    return force, payload_forces(model, quaternion, nu, nu_dot, q, q_dot, q_ddot)
+
+
+@exact_kernel
+def momentum_noise(model: Model, now: Array, twist: Array, rate: float) -> Array:
+    """Variances (6+n,) of the momentum, diag M S M^T.
+
+    Args:
+        now: (10 + 2 n,) moment.
+        twist: (6, 6) covariance of nu.
+        rate: variance of the joints' rates, (rad/s)^2.
+    """
+    n = (now.shape[0] - NU) // 2
+    M = mass_matrix(model, now[NU : NU + n])
+    variances = np.empty(6 + n)
+    for i in range(6 + n):
+        total = 0.0
+        for j in range(6):
+            for k in range(6):
+                total += M[i, j] * twist[j, k] * M[i, k]
+        for j in range(6, 6 + n):
+            total += M[i, j] * rate * M[i, j]
+        variances[i] = total
+    return variances
+
+
+@exact_kernel
+def follow_external(state: Array, gain: Array, force: Array, forces: Array, theta: Array) -> Array:
+    """The external wrench (6,), after its filter has taken in another interval.
+
+    What a payload would be passes the same filter, so that the external wrench is without it from
+    the moment on at which the model has it.
+
+    Args:
+        state: (6, 9) filtered wrench, and filtered columns of a payload's; changed in place.
+        gain: (6,) 1 - exp(-K dt).
+        force, forces: (6+n,) and (6+n, 8) as of `unexplained_force`.
+        theta: (8,) of the payload that the model has.
+    """
+    external = np.empty(6)
+    for i in range(6):
+        state[i, 0] += gain[i] * (force[i] - state[i, 0])
+        external[i] = state[i, 0]
+        for k in range(8):
+            state[i, 1 + k] += gain[i] * (forces[i, k] - state[i, 1 + k])
+            external[i] -= state[i, 1 + k] * theta[k]
+    return external
 
 
 @exact_inner

@@ -1,4 +1,6 @@
-"""The self-disturbance observer, eq. (21): what acts on the vehicle besides its thrusters."""
+"""The self-disturbance observers: what acts on the vehicle besides its thrusters."""
+
+import warnings
 
 import numpy as np
 
@@ -8,44 +10,46 @@ from uvms_core.signals import (
     DisturbanceBudget,
     JointStates,
     Odometry,
+    Payload,
     Wrench,
     to_seconds,
 )
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics import build_model, coupling_wrench, restoring_wrench
-from uvms_dynamics.tracking import TrackingFilter
-from uvms_observer.disturbance.external import ExternalWrenchObserver, Moment
+from uvms_dynamics import Model, build_model
+from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
+from uvms_dynamics.payload import COLUMNS, differs, with_payload
+from uvms_observer.disturbance.bandwidth import external_bandwidth
+from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
+from uvms_observer.disturbance.model_parts import ModelParts
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
+from uvms_observer.payload import PayloadEstimator
+from uvms_observer.payload.fit import theta_of
 
-NOT_MOVING = np.zeros(6)
+FORMER_BANDWIDTH_RAD_S = 0.5
+"""Of the observer that was called momentum_residual."""
 
 
-class DisturbanceObserver:
-    """Restoring and coupling wrench of the estimated state through the model, and the remainder.
+class ModelObserver:
+    """Observer `paper`, eq. (21) alone: restoring and coupling wrench of the estimated state.
 
-    Eq. (21): F_dis = restoring(R, q) + coupling(nu, nu_dot, q, q_dot, q_ddot), a wrench that acts
-    ON the vehicle, body frame, about its origin. Accelerations come from tracking filters, the
-    external wrench from a momentum residual. The water is assumed at rest: the effect of a current
-    is part of the external wrench.
+    F_dis = restoring(R, q) + coupling(nu, nu_dot, q, q_dot, q_ddot), a wrench that acts ON the
+    vehicle, body frame, about its origin. Accelerations come from tracking filters; joint states
+    that are late are carried to the odometry's stamp. Nothing is external.
 
     Args:
-        vehicle: model, thruster lag, encoder noise.
-        config: switch and bandwidths.
+        vehicle: model, encoder noise, thruster lag.
+        config: bandwidths and limits.
     """
 
     def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
-        self._model = build_model(vehicle)
-        self._config = config
+        self._vehicle, self._config = vehicle, config
+        self._model: Model = build_model(vehicle)
+        self._loaded = self._model
         self._joint_names = vehicle.joint_names
-        self._encoder_variances = _encoder_variances(vehicle)
-        self._joints = TrackingFilter(3, config.joint_jerk_rad_s3)
-        self._linear = TrackingFilter(2, config.vehicle_jerk_m_s3)
-        self._angular = TrackingFilter(2, config.vehicle_jerk_rad_s3)
-        self._lag = ThrustLag(vehicle)
-        self._external = ExternalWrenchObserver(self._model, config.external_bandwidth_rad_s)
+        self._joints = JointPrediction(vehicle, config.joint_jerk_rad_s3, config.joint_age_limit_s)
+        self._parts = ModelParts(np.array([config.vehicle_jerk_m_s3, config.vehicle_jerk_rad_s3]))
         self._stamp: int | None = None
-        self._before: Moment | None = None
 
     def step(
         self, odometry: Odometry, joints: JointStates, achieved: Wrench | None
@@ -67,50 +71,144 @@ class DisturbanceObserver:
                 a wrong shape. The observer is as it was before.
         """
         self._check(odometry, joints, achieved)
-        now = Moment(odometry.quaternion, odometry.nu, joints.position, joints.velocity)
         dt = 0.0 if self._stamp is None else to_seconds(odometry.stamp - self._stamp)
-        external = self._observe_external(dt, now, achieved)
-        nu_dot, q_ddot = self._accelerations(dt, odometry, joints)
-        self._stamp, self._before = odometry.stamp, now
-        restoring = restoring_wrench(self._model, now.quaternion, now.q)
-        coupling = coupling_wrench(self._model, now.nu, nu_dot, now.q, now.q_dot, q_ddot)
-        held = coupling_wrench(self._model, now.nu, NOT_MOVING, now.q, now.q_dot, q_ddot)
-        total = restoring + held + (external if self._config.external else 0.0)
-        budget = DisturbanceBudget(odometry.stamp, restoring, coupling, external)
+        motion = self._joints.step(joints, odometry.stamp)
+        external, sigma = self._observe(dt, odometry, motion, joints.effort, achieved)
+        self._stamp = odometry.stamp
+        restoring, coupling, held = self._parts.step(self._loaded, dt, odometry, motion)
+        total = restoring + held
+        if self._config.external:
+            total += external
+        budget = DisturbanceBudget(
+            odometry.stamp, restoring, coupling, external, sigma, self._payload()
+        )
         return budget, Wrench(odometry.stamp, total)
 
-    def _observe_external(self, dt: float, now: Moment, achieved: Wrench | None) -> Array:
-        if achieved is None or self._before is None:
-            return self._external.wrench
-        thrust = self._lag.step(dt, achieved.wrench)
-        return self._external.step(dt, self._before, now, thrust)
-
-    def _accelerations(
-        self, dt: float, odometry: Odometry, joints: JointStates
+    def _observe(
+        self,
+        dt: float,
+        odometry: Odometry,
+        motion: JointMotion,
+        effort: Array,
+        achieved: Wrench | None,
     ) -> tuple[Array, Array]:
-        """Vehicle (6,), body frame, and joints (n,)."""
-        measured = np.array((joints.position, joints.velocity))
-        q_ddot = self._joints.step(dt, measured, self._encoder_variances)[2]
-        a, b, c, d, e, f = odometry.twist_covariance.diagonal().tolist()
-        linear, angular = np.array(((a + b + c) / 3.0,)), np.array(((d + e + f) / 3.0,))
-        nu = odometry.nu.reshape(1, 6)
-        nu_dot = np.empty(6)
-        nu_dot[:3] = self._linear.step(dt, nu[:, :3], linear)[1]
-        nu_dot[3:] = self._angular.step(dt, nu[:, 3:], angular)[1]
-        return nu_dot, q_ddot
+        """The external wrench (6,) and its standard deviation (6,), 0: not known."""
+        return np.zeros(6), np.zeros(6)
+
+    def _payload(self) -> Payload | None:
+        return None
 
     def _check(self, odometry: Odometry, joints: JointStates, achieved: Wrench | None) -> None:
         if self._stamp is not None:
             checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
-        checks.age("joint_states", joints.stamp, odometry.stamp)
+        self._joints.check(joints, odometry.stamp)
         checks.check("odometry", odometry)
         checks.check("joint_states", joints, n=self._joint_names)
         if achieved is not None:
             checks.check("wrench_achieved", achieved)
 
 
-def _encoder_variances(vehicle: Vehicle) -> Array:
-    """Variances (2,) of angle and rate; rounding to a step s adds s^2 / 12."""
-    encoders = vehicle.sensors.encoders
-    angle = encoders.noise_deg**2 + encoders.resolution_deg**2 / 12.0
-    return np.radians(1.0) ** 2 * np.array([angle, encoders.rate_noise_deg_s**2])
+class DisturbanceObserver(ModelObserver):
+    """Observer `momentum`: as `paper`, and the remainder as external wrench.
+
+    The remainder is a momentum residual, with the bandwidth of the configuration or by rule. The
+    water is assumed at rest: the effect of a current is part of the external wrench.
+    """
+
+    def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
+        super().__init__(vehicle, config)
+        self._lag = ThrustLag(vehicle)
+        self._rate_variance = float(encoder_variances(vehicle)[1])
+        self._before: Array | None = None
+        self._filter = np.zeros((6, 1 + COLUMNS))
+        self._theta = np.zeros(COLUMNS)  # of the payload in the loaded model
+        self._external, self._sigma = np.zeros(6), np.zeros(6)
+        self._dt, self._gain, self._spread = 0.0, np.zeros(6), np.zeros(6)
+
+    def _observe(
+        self,
+        dt: float,
+        odometry: Odometry,
+        motion: JointMotion,
+        effort: Array,
+        achieved: Wrench | None,
+    ) -> tuple[Array, Array]:
+        now = np.concatenate((odometry.quaternion, odometry.nu, motion.q, motion.q_dot))
+        before, self._before = self._before, now
+        if achieved is None or before is None:
+            return self._external.copy(), self._sigma
+        if dt != self._dt:
+            self._set_interval(dt)
+        thrust = self._lag.step(dt, achieved.wrench)
+        force, forces = unexplained_force(self._model, dt, before, now, thrust, effort)
+        noise = momentum_noise(self._model, now, odometry.twist_covariance, self._rate_variance)
+        self._explain(dt, force, forces, noise)
+        self._external = follow_external(self._filter, self._gain, force, forces, self._theta)
+        self._sigma = self._spread * np.sqrt(noise[:6])
+        return self._external.copy(), self._sigma
+
+    def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
+        """Look for what may explain the unexplained force of the interval.
+
+        Args:
+            dt: its length, s.
+            force: (6+n,) what the motion needs beyond model (without payload) and drives; what a
+                part of the system explains may be taken off in place.
+            forces: (6+n, 8) a payload's, as of `payload_forces`.
+            noise: (6+n,) variances of the momentum, (N s)^2.
+        """
+
+    def _set_interval(self, dt: float) -> None:
+        """Gain, and std of the estimate over that of the momentum, at intervals of dt s."""
+        self._dt = dt
+        self._gain = -np.expm1(-self._bandwidth(dt) * dt)
+        self._spread = self._gain / dt * np.sqrt(2.0 / (2.0 - self._gain))
+
+    def _bandwidth(self, dt: float) -> Array:
+        given = self._config.external_bandwidth_rad_s
+        return external_bandwidth(self._vehicle, dt) if given is None else np.full(6, given)
+
+
+class CombinedObserver(DisturbanceObserver):
+    """Observer `combined`: as `momentum`, and what the gripper holds.
+
+    A payload that is confirmed is taken into the model, so that its forces are where they belong:
+    in restoring and coupling at the posture of the arm, and no more in the external wrench.
+    """
+
+    def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
+        super().__init__(vehicle, config)
+        self._estimator = PayloadEstimator(vehicle)
+        self._in_model = self._estimator.payload
+
+    def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
+        if self._estimator.step(dt, force, forces, noise):
+            held = self._estimator.payload
+            if differs(held, self._in_model):
+                self._take_in(held)
+
+    def _take_in(self, held: Payload) -> None:
+        self._in_model = held
+        phi = np.array([held.weight, *held.position, held.mass])
+        self._theta = theta_of(phi)
+        self._loaded = with_payload(self._model, held.mass, held.weight, held.position)
+
+    def _payload(self) -> Payload:
+        return self._estimator.payload
+
+
+class FormerObserver(DisturbanceObserver):
+    """Observer `momentum_residual`, as `momentum` was called: at 0.5 rad/s unless one is given."""
+
+    def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
+        warnings.warn(
+            "observer.law momentum_residual is now called momentum, with a bandwidth by rule;"
+            f" external_bandwidth_rad_s: {FORMER_BANDWIDTH_RAD_S:g} gives the former one",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+        super().__init__(vehicle, config)
+
+    def _bandwidth(self, dt: float) -> Array:
+        given = self._config.external_bandwidth_rad_s
+        return np.full(6, FORMER_BANDWIDTH_RAD_S if given is None else given)

@@ -1,4 +1,4 @@
-"""The payload in the gripper: noticed, weighed and let go of, from what the model cannot explain."""
+"""The payload in the gripper: noticed, weighed and let go of, from unexplained forces."""
 
 import numpy as np
 
@@ -23,7 +23,7 @@ LIKELY = 60.0
 """Least 2 ln(ratio): chi-square of five, exceeded once in 1e11 blocks where nothing is held."""
 EXPLAINED = 0.9
 """Least share of the change since the grasp that the payload explains. A current, a dead thruster
-or a stuck joint leaves more: its forces on hull and joints are not those of a weight in the tool."""
+or a stuck joint leaves more: its forces are not those of a weight in the tool."""
 SIGNIFICANT = 5.0
 """Least weight over its std, and most standard deviations that place and mass may be from what is
 known of any payload."""

@@ -1,5 +1,7 @@
 """Weight, place and mass of a payload from the information about its forces (kernels)."""
 
+from typing import Any
+
 import numpy as np
 
 from uvms_core.signals import Array
@@ -7,7 +9,7 @@ from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_observer.payload.step_search import likelihood_of_step
 
 ROUNDS = 6
-"""Of Gauss and Newton from a rough start; the problem is linear but for the products w p and m p."""
+"""Of Gauss and Newton from a rough start; only the products w p and m p are not linear."""
 LEAST_WEIGHT_N = 0.1
 """What is known of the mass is stated for a weight of at least this."""
 NOTHING_KNOWN = 1e-6
@@ -38,7 +40,8 @@ def fit(L: Array, d: Array, phi: Array, known: Array, rounds: int) -> tuple[Arra
         rounds: of Gauss and Newton.
     """
     grip, per_weight, spread = known[0], known[1], known[2]
-    phi, J, covariance = phi.copy(), np.zeros((8, 5)), np.zeros((5, 5))
+    phi, J = phi.copy(), np.zeros((8, 5))
+    covariance: Any = np.zeros((5, 5))
     for _ in range(rounds):
         w, m, size = phi[0], phi[4], max(abs(phi[0]), LEAST_WEIGHT_N)
         J[0, 0] = J[4, 4] = 1.0
