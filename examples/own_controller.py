@@ -56,7 +56,7 @@ def run(law: str) -> np.ndarray:
 
 if __name__ == "__main__":
     for law, name in (
-        ("s_surface", "UVMS: S-surface, model, observer"),
+        ("default", "UVMS: model, observer, gains by rule"),
         ("own_controller:PdController", "PD only"),
     ):
         roll, pitch = np.abs(run(law)).max(axis=0)

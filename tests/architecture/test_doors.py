@@ -31,7 +31,7 @@ def compared(tree):
 
 
 def test_the_names_are_there():
-    assert {"s_surface", "genetic", "least_norm", "weighted_least_squares"} <= NAMES
+    assert {"paper", "genetic", "least_norm", "weighted_least_squares"} <= NAMES
 
 
 @pytest.mark.parametrize("package", PACKAGES)

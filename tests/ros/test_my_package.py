@@ -91,7 +91,7 @@ def test_a_node_refuses_a_law_that_does_not_fit(law, message):
 
 def test_help_lists_the_choice_and_where_parameters_go():
     text = help_text(ControllerNode)
-    assert "law (s_surface)" in text
+    assert "law (default)" in text
     assert "parameters.NAME" in text
     assert issubclass(ControlConfig, Config)
 

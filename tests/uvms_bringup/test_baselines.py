@@ -24,7 +24,7 @@ def ticks_of(name, settings, duration=3.0):
     [
         ("control=off", "control={enabled: false}"),
         ("control=false", "control={enabled: false}"),
-        ("control=s_surface", "control={law: s_surface}"),
+        ("control=paper", "control={law: paper}"),
         ("observer=none", "observer={law: none}"),
         ("planner=vehicle_only", "planner={method: vehicle_only}"),
         ("navigation=error_state_ekf", "navigation={filter: error_state_ekf}"),
@@ -58,7 +58,7 @@ def test_values_of_one_run_do_not_get_into_the_next():
 @pytest.mark.parametrize(
     ("setting", "words"),
     [
-        ("control=of", ["control.law", "'of'", "s_surface"]),
+        ("control=of", ["control.law", "'of'", "default, paper"]),
         ("observer=off", ["observer.law", "'off'", "momentum_residual, none"]),
         ("planner=frozen", ["planner.method", "'frozen'", "vehicle_only"]),
         ("control=true", ["control:"]),

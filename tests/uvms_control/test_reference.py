@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from trajectories import joints, reference, vehicle
 
-from uvms_control.reference import right_jacobian, sample_reference
+from uvms_control.reference import right_jacobian, sample_ahead, sample_reference
 from uvms_core.checks import check
 from uvms_core.errors import SignalError
 from uvms_core.signals import to_nanoseconds
@@ -69,6 +69,22 @@ def test_the_end_is_in_motion_and_beyond_it_everything_rests():
     assert np.array_equal(before.quaternion, planned.quaternion[0])
     assert not before.nu.any()
     assert not before.q_dot.any()
+
+
+def test_what_is_ahead_is_the_plan_at_that_instant_and_goes_on_beyond_its_end():
+    planned = reference(TIMES, STAMP)
+    lead = 150_000_000
+    for t in (0.0, 0.1, 0.17, 0.35):  # at samples and between, up to the last
+        found = sample_ahead(planned, STAMP + to_nanoseconds(t), lead)
+        expected = sample_reference(planned, STAMP + to_nanoseconds(t) + lead)
+        for name in vars(found):
+            assert np.array_equal(getattr(found, name), getattr(expected, name)), name
+    beyond = sample_ahead(planned, STAMP + to_nanoseconds(0.45), lead)
+    assert np.allclose(beyond.q, planned.q[-1] + 0.1 * planned.q_dot[-1], rtol=1e-12)
+    assert np.array_equal(beyond.nu_dot, planned.nu_dot[-1])
+    assert np.array_equal(beyond.q_dot, planned.q_dot[-1])
+    before = sample_ahead(planned, STAMP - to_nanoseconds(1.0), lead)
+    assert np.array_equal(before.q, planned.q[0])
 
 
 def test_a_single_sample_holds():

@@ -1,4 +1,4 @@
-"""Eq. (22): exact with an exact model, convergent, and steadier with the feed-forward."""
+"""The law `paper`, eq. (22): exact with an exact model, convergent, steadier with feed-forward."""
 
 import numpy as np
 import pytest
@@ -9,7 +9,7 @@ from trajectories import vehicle as vehicle_motion
 from uvms_control import (
     AllocatorConfig,
     ControlConfig,
-    Controller,
+    PaperController,
     ThrustAllocator,
     VehicleControlConfig,
 )
@@ -36,7 +36,7 @@ def test_zero_error_reproduces_the_reference_acceleration(t):
     """With the exact model and disturbance, forward dynamics returns nu_dot_d and q_ddot_d."""
     reference = moving_reference([0.0, 0.5], start=t)
     config = ControlConfig(arm=NO_FRICTION_COMPENSATION, compensate_vehicle_motion=False)
-    controller = Controller(VEHICLE, config)
+    controller = PaperController(VEHICLE, config)
     position, quaternion, nu, nu_dot = vehicle_motion(t)
     q, q_dot, q_ddot = (getattr(reference, n)[0] for n in ("q", "q_dot", "q_ddot"))
     state = at_rest(q, position, quaternion)
@@ -69,7 +69,7 @@ def test_vehicle_converges_from_any_attitude(rpy, offset):
     goal = rpy_to_quat(*rpy)
     start = quat_multiply(goal, rpy_to_quat(0.3, -0.3, 0.6))
     reference = hold(STOWED, offset, goal)
-    controller = Controller(VEHICLE, ControlConfig(compensate_vehicle_motion=False))
+    controller = PaperController(VEHICLE, ControlConfig(compensate_vehicle_motion=False))
     allocator = ThrustAllocator(VEHICLE, AllocatorConfig())
     states = [
         s for _, s, _, _ in run(
@@ -87,7 +87,7 @@ def swing_attitude(observer):
     """Largest roll and pitch (degrees) while the arm swings out to starboard in 10 s."""
     reference = joint_motion(STOWED, STARBOARD, 10.0, 20.0)
     config = ControlConfig(observer=observer, compensate_vehicle_motion=False)
-    controller = Controller(VEHICLE, config)
+    controller = PaperController(VEHICLE, config)
     angles = [
         np.degrees(quat_to_rpy(state.quaternion))
         for _, state, _, _ in run(
@@ -110,7 +110,7 @@ def test_a_moving_reference_is_tracked():
     reference = moving_reference(np.arange(401) * PERIOD)
     start = at_rest(reference.q[0], reference.position[0], reference.quaternion[0])
     start.nu[:], start.q_dot[:] = reference.nu[0], reference.q_dot[0]
-    controller = Controller(VEHICLE, ControlConfig(compensate_vehicle_motion=False))
+    controller = PaperController(VEHICLE, ControlConfig(compensate_vehicle_motion=False))
     worst_position = worst_attitude = 0.0
     for t, state, _, _ in run(MODEL, controller, start, reference, 20.0):
         k = round(t / PERIOD)
@@ -125,7 +125,7 @@ def test_a_moving_reference_is_tracked():
 
 def test_disabled_control_leaves_the_vehicle_free_and_the_arm_driven():
     reference = joint_motion(STOWED, STARBOARD, 10.0, 14.0)
-    controller = Controller(VEHICLE, ControlConfig(enabled=False))
+    controller = PaperController(VEHICLE, ControlConfig(enabled=False))
     rolls = []
     for _, state, wrench, _ in run(MODEL, controller, at_rest(STOWED), reference, 14.0):
         assert not wrench.any()
@@ -142,8 +142,8 @@ def offset_under_push(controller, push, duration):
 
 def test_the_integral_removes_what_nobody_observes():
     push = (3.0, 0.0, 0.0, 0.0, 0.0, 0.0)
-    plain = Controller(VEHICLE, ControlConfig(compensate_vehicle_motion=False))
-    integral = Controller(
+    plain = PaperController(VEHICLE, ControlConfig(compensate_vehicle_motion=False))
+    integral = PaperController(
         VEHICLE,
         ControlConfig(
             compensate_vehicle_motion=False,
@@ -157,7 +157,7 @@ def test_the_integral_removes_what_nobody_observes():
 
 def test_the_integral_is_bounded():
     config = VehicleControlConfig(k_integral=(1.0,) * 6, integral_limit=0.2)
-    controller = Controller(VEHICLE, ControlConfig(vehicle=config))
+    controller = PaperController(VEHICLE, ControlConfig(vehicle=config))
     near = np.full(3, 0.05)
     for k in range(400):
         odometry = Odometry(
@@ -172,7 +172,7 @@ def test_the_integral_is_bounded():
 
 def test_the_integral_rests_while_the_law_is_saturated():
     config = VehicleControlConfig(k_integral=(1.0,) * 6)
-    controller = Controller(VEHICLE, ControlConfig(vehicle=config))
+    controller = PaperController(VEHICLE, ControlConfig(vehicle=config))
     far = hold(STOWED, (5.0, 0.0, 0.0))
     for k in range(3):
         odometry, joints = at_rest(STOWED).estimates(k * 50_000_000)

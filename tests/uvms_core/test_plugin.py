@@ -22,11 +22,17 @@ class Filter(Protocol):
         return "as inherited"
 
 
+class Inner(Config):
+    width: float = 1.0
+    names: tuple[str, ...] = ()
+
+
 class FilterConfig(PluginConfig):
     slot: ClassVar[Slot] = Slot(registry.CONTROLLERS, "law", Filter)
 
-    law: str = Field("s_surface", description="of the test")
+    law: str = Field("default", description="of the test")
     limit: float = 3.0
+    inner: Inner = Inner()
 
 
 class Good:
@@ -82,6 +88,14 @@ class FailingConstructor(Good):
 class RefusingConstructor(Good):
     def __init__(self, vehicle, config):
         raise UvmsError("the vehicle has no arm")
+
+
+class Narrow(Good):
+    ignores: ClassVar = {"inner": "others"}
+
+
+class WideAgain(Narrow):
+    pass
 
 
 def function(vehicle, config):
@@ -172,6 +186,17 @@ def test_wrong_parameters_name_the_part_the_value_and_what_is_allowed(parameters
     assert message in str(caught.value)
 
 
+def test_a_section_that_the_part_ignores_is_refused_where_it_is_set():
+    with pytest.raises(ConfigError) as caught:
+        section("Narrow", inner={"width": 2.0}).resolved()
+    assert str(caught.value) == (
+        "control law 'my_parts:Narrow' ignores inner.width: the section inner is for others."
+        " Leave it out, or choose another law"
+    )
+    for fine in (section("Narrow", inner={"width": 1.0}), section("WideAgain", inner={"width": 2})):
+        assert fine.resolved().inner == fine.inner
+
+
 def test_a_part_without_parameters_takes_none():
     with pytest.raises(PluginError, match=r"takes no parameters; got \{'gain': 1\.0\}"):
         section("Derived", parameters={"gain": 1.0}).resolved()
@@ -180,7 +205,7 @@ def test_a_part_without_parameters_takes_none():
 @pytest.mark.parametrize("name", ["pid", "my_parts", "my_parts:", ":Good", "my parts:Good", ""])
 def test_an_unknown_name_lists_the_choices(name):
     with pytest.raises(
-        ValueError, match=r"is unknown; choose one of .*s_surface.*my_module:MyClass"
+        ValueError, match=r"is unknown; choose one of .*default, paper.*my_module:MyClass"
     ):
         FilterConfig(law=name)
 

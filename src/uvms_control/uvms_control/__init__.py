@@ -13,6 +13,7 @@ from uvms_control.config import (
 from uvms_control.controller import Controller
 from uvms_control.errors import AllocationError, ControlError, ControlSetupError
 from uvms_control.interfaces import AllocationMethod, ControlLaw
+from uvms_control.paper_controller import PaperController
 from uvms_control.reference import ReferenceSample, sample_reference
 from uvms_control.s_surface import SSurface, lyapunov, sigmoid, sigmoid_series
 from uvms_control.tracking_error import TrackingError, tracking_error
@@ -31,6 +32,7 @@ __all__ = [
     "ControlSetupError",
     "Controller",
     "GainConfig",
+    "PaperController",
     "ReferenceSample",
     "SSurface",
     "ThrustAllocator",

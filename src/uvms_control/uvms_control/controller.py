@@ -1,6 +1,8 @@
 """The controller of vehicle and arm: one tick from estimated state and reference to commands."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import ClassVar
 
 import numpy as np
 
@@ -36,6 +38,9 @@ class Controller:
     Gains follow from the vehicle file and the control period. A law that was not told the period
     (`prepare`) takes that of its first two steps.
     """
+
+    ignores: ClassVar[Mapping[str, str]] = {"vehicle": "the law paper; this one has gains"}
+    """Sections of the configuration that are another law's; see `PluginConfig.resolved`."""
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""

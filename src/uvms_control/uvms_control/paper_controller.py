@@ -1,6 +1,8 @@
 """Control law `paper`: the vehicle by eq. (22) as printed, the arm by eq. (19)."""
 
+from collections.abc import Mapping
 from dataclasses import replace
+from typing import ClassVar
 
 from uvms_control.config import ControlConfig
 from uvms_control.controller import Controller
@@ -22,6 +24,8 @@ class PaperController(Controller):
     It cancels the righting moment of the hull and drives the vehicle with a current: the law to
     compare with, not the one to dive with (docs/control.md).
     """
+
+    ignores: ClassVar[Mapping[str, str]] = {"gains": "the law default; this one has vehicle"}
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""

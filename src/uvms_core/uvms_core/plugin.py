@@ -122,8 +122,10 @@ class PluginConfig(Config):
 
         Raises:
             PluginError: as `part_parameters`, or the part takes no parameters.
-            ConfigError: a parameter is unknown or outside its bounds.
+            ConfigError: a parameter is unknown or outside its bounds, or the part ignores a
+                section that is set.
         """
+        self._refuse_ignored()
         model, given = self.part_parameters(), self.parameters
         if model is None:
             if given:
@@ -134,9 +136,32 @@ class PluginConfig(Config):
         own = validated(model, given, f"parameters of {self._label}", ConfigError)
         return self.model_copy(update={"parameters": own})
 
+    def _refuse_ignored(self) -> None:
+        """Refuse values in a section that the chosen part does not read.
+
+        A part's class lists such sections as `ignores`, each with who reads it. The list is that
+        of the class alone: a class derived from it may read all of them.
+        """
+        for section, reader in vars(self.part()).get("ignores", {}).items():
+            for name in _changed(getattr(self, section)):
+                raise ConfigError(
+                    f"{self._label} ignores {section}.{name}: the section {section} is for"
+                    f" {reader}. Leave it out, or choose another {self.slot.field}"
+                )
+
     @property
     def _label(self) -> str:
         return f"{self.slot.door.what} {self.chosen!r}"
+
+
+def _changed(section: Config) -> Iterator[str]:
+    """Fields of a section that are not at their defaults.
+
+    By value: ROS parameters and the configuration in a log set every field.
+    """
+    for name, field in type(section).model_fields.items():
+        if getattr(section, name) != field.get_default(call_default_factory=True):
+            yield name
 
 
 def create(config: PluginConfig, first: Any, *others: Any) -> Any:

@@ -19,6 +19,8 @@ from uvms_core.yaml_text import parse_yaml
 C = TypeVar("C", bound=Config)
 PARAMETERS = "parameters"
 """Field of a section under which stands what only the chosen part knows."""
+UNTYPED: tuple[Any, ...] = ((), None)
+"""Values that have no type in ROS; a parameter that is not set stands for them."""
 
 
 def declare_config(node: Node, model: type[C]) -> C:
@@ -43,11 +45,15 @@ def declare_config(node: Node, model: type[C]) -> C:
 def flatten(config: Config) -> dict[str, Any]:
     """A configuration as ROS parameter names and values, for a parameter file.
 
-    Empty lists are left out: ROS cannot tell their type, and they are the defaults. Maps, and lists
-    of sections or of lists, are JSON.
+    Empty lists and None are left out: ROS cannot tell their type, and they are the defaults. Maps,
+    and lists of sections or of lists, are JSON.
     """
     leaves = _leaves(_resolved(config))
-    return {".".join(path): _to_ros(value, field) for path, field, value in leaves if value != ()}
+    return {
+        ".".join(path): _to_ros(value, field)
+        for path, field, value in leaves
+        if value not in UNTYPED
+    }
 
 
 def describe(*models: type[Config]) -> str:
@@ -84,8 +90,9 @@ def _resolved(config: Config) -> Config:
 
 
 def _declare_field(node: Node, name: str, default: Any, field: FieldInfo) -> None:
-    if default == () and not _is_text(field):
-        node.declare_parameter(name, Parameter.Type.DOUBLE_ARRAY, _descriptor(field))
+    if default in UNTYPED and not _is_text(field):
+        kind = Parameter.Type.DOUBLE_ARRAY if _is_array(field.annotation) else Parameter.Type.DOUBLE
+        node.declare_parameter(name, kind, _descriptor(field))
     else:
         node.declare_parameter(name, _to_ros(default, field), _descriptor(field))
 
@@ -99,6 +106,11 @@ def _leaves(
             yield from _leaves(value, (*prefix, name))
         elif not (isinstance(values, PluginConfig) and name == PARAMETERS):  # those of no part
             yield (*prefix, name), field, value
+
+
+def _is_array(annotation: Any) -> bool:
+    """Whether an annotation such as `tuple[float, ...] | None` is that of a list."""
+    return get_origin(annotation) is tuple or any(map(_is_array, get_args(annotation)))
 
 
 def _is_text(field: FieldInfo) -> bool:
