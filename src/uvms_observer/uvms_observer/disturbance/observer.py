@@ -140,7 +140,8 @@ class DisturbanceObserver(ModelObserver):
         if dt != self._dt:
             self._set_interval(dt)
         thrust = self._lag.step(dt, achieved.wrench)
-        force, forces = unexplained_force(self._model, dt, before, now, thrust, effort)
+        smooth = self._parts.nu_dot, motion.q_ddot
+        force, forces = unexplained_force(self._model, dt, before, now, thrust, effort, smooth)
         noise = momentum_noise(self._model, now, odometry.twist_covariance, self._rate_variance)
         self._explain(dt, force, forces, noise)
         self._external = follow_external(self._filter, self._gain, force, forces, self._theta)
