@@ -120,6 +120,8 @@ class DisturbanceObserver(ModelObserver):
         self._lag = ThrustLag(vehicle)
         self._rate_variance = float(encoder_variances(vehicle)[1])
         self._before: Array | None = None
+        self._feels = False
+        """Whether the drives report torques; without, the joints' rows mean nothing."""
         self._filter = np.zeros((6, 1 + COLUMNS))
         self._theta = np.zeros(COLUMNS)  # of the payload in the loaded model
         self._external, self._sigma = np.zeros(6), np.zeros(6)
@@ -139,6 +141,7 @@ class DisturbanceObserver(ModelObserver):
             return self._external.copy(), self._sigma
         if dt != self._dt:
             self._set_interval(dt)
+        self._feels = bool(effort.any())
         thrust = self._lag.step(dt, achieved.wrench)
         smooth = self._parts.nu_dot, motion.q_ddot
         force, forces = unexplained_force(self._model, dt, before, now, thrust, effort, smooth)
@@ -183,7 +186,7 @@ class CombinedObserver(DisturbanceObserver):
         self._in_model = self._estimator.payload
 
     def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
-        if self._estimator.step(dt, force, forces, noise):
+        if self._feels and self._estimator.step(dt, force, forces, noise):
             held = self._estimator.payload
             if differs(held, self._in_model):
                 self._take_in(held)
