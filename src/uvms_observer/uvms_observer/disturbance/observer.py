@@ -17,7 +17,7 @@ from uvms_core.signals import (
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
 from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
-from uvms_dynamics.payload import COLUMNS, differs, with_payload
+from uvms_dynamics.payload import COLUMNS, LoadedModel
 from uvms_observer.disturbance.bandwidth import external_bandwidth
 from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
 from uvms_observer.disturbance.model_parts import ModelParts
@@ -45,7 +45,7 @@ class ModelObserver:
     def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
         self._vehicle, self._config = vehicle, config
         self._model: Model = build_model(vehicle)
-        self._loaded = self._model
+        self._loaded = LoadedModel(self._model)
         self._joint_names = vehicle.joint_names
         self._joints = JointPrediction(vehicle, config.joint_jerk_rad_s3, config.joint_age_limit_s)
         self._parts = ModelParts(np.array([config.vehicle_jerk_m_s3, config.vehicle_jerk_rad_s3]))
@@ -75,7 +75,7 @@ class ModelObserver:
         motion = self._joints.step(joints, odometry.stamp)
         external, sigma = self._observe(dt, odometry, motion, joints.effort, achieved)
         self._stamp = odometry.stamp
-        restoring, coupling, held = self._parts.step(self._loaded, dt, odometry, motion)
+        restoring, coupling, held = self._parts.step(self._loaded.model, dt, odometry, motion)
         total = restoring + held
         if self._config.external:
             total += external
@@ -183,19 +183,13 @@ class CombinedObserver(DisturbanceObserver):
     def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
         super().__init__(vehicle, config)
         self._estimator = PayloadEstimator(vehicle)
-        self._in_model = self._estimator.payload
 
     def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
-        if self._feels and self._estimator.step(dt, force, forces, noise):
-            held = self._estimator.payload
-            if differs(held, self._in_model):
-                self._take_in(held)
-
-    def _take_in(self, held: Payload) -> None:
-        self._in_model = held
-        phi = np.array([held.weight, *held.position, held.mass])
-        self._theta = theta_of(phi)
-        self._loaded = with_payload(self._model, held.mass, held.weight, held.position)
+        if not (self._feels and self._estimator.step(dt, force, forces, noise)):
+            return
+        payload = self._estimator.payload
+        if self._loaded.take(payload):
+            self._theta = theta_of(np.array([payload.weight, *payload.position, payload.mass]))
 
     def _payload(self) -> Payload:
         return self._estimator.payload
