@@ -59,7 +59,10 @@ def test_values_of_one_run_do_not_get_into_the_next():
     ("setting", "words"),
     [
         ("control=of", ["control.law", "'of'", "default, paper"]),
-        ("observer=off", ["observer.law", "'off'", "momentum_residual, none"]),
+        (
+            "observer=off",
+            ["observer.law", "'off'", "combined, momentum, "],
+        ),
         ("planner=frozen", ["planner.method", "'frozen'", "vehicle_only"]),
         ("control=true", ["control:"]),
         ("observer=false", ["observer:"]),

@@ -3,9 +3,10 @@
 import numpy as np
 import pytest
 
+from uvms_core.signals import Payload
 from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import build_model, forward_dynamics, inverse_dynamics, mass_matrix
-from uvms_dynamics.payload import payload_forces, with_payload
+from uvms_dynamics.payload import LoadedModel, payload_forces, with_payload
 from uvms_dynamics.simulation.events.load import Load, loaded
 
 VEHICLES = {name: load_vehicle(name) for name in ("reference_auv", "bluerov2_alpha5")}
@@ -70,3 +71,20 @@ def test_nothing_is_the_model_itself():
     quaternion, nu, nu_dot, q, q_dot, q_ddot = state
     found = forward_dynamics(heavy, quaternion, nu, q, q_dot, tau)
     np.testing.assert_allclose(found, np.r_[nu_dot, q_ddot], atol=1e-8)
+
+
+def test_a_loaded_model_follows_what_is_held_and_is_not_made_anew_for_nothing():
+    def payload(held, weight):
+        return Payload(held, 1.3, 0.1, weight, 0.1, PLACE, np.full(3, 0.01))
+
+    bare = build_model(VEHICLES["reference_auv"])
+    loaded = LoadedModel(bare)
+    assert not loaded.take(None)
+    assert not loaded.take(payload(False, 5.0))
+    assert loaded.take(payload(True, 5.0))
+    np.testing.assert_array_equal(loaded.model, with_payload(bare, 1.3, 5.0, PLACE))
+    assert not loaded.take(payload(True, 5.01))
+    assert loaded.take(payload(True, 6.0))
+    np.testing.assert_array_equal(loaded.model, with_payload(bare, 1.3, 6.0, PLACE))
+    assert loaded.take(payload(False, 0.0))
+    assert loaded.model is bare

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_core.signals import JointStates, Odometry, Wrench, to_nanoseconds
-from uvms_dynamics import build_model, forward_dynamics, mass_matrix
+from uvms_dynamics import build_model, forward_dynamics, joint_passive_torque, mass_matrix
 from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix
 from uvms_dynamics.model import thruster_matrix
 
@@ -44,6 +44,7 @@ class SmallPlant:
         self.tau = np.array([t.time_constant_s for t in self.vehicle.thrusters])
         self.push = np.zeros(6) if self.push is None else np.array(self.push, dtype=float)
         self.tick = 0
+        self.effort = np.zeros(n)  # of the drives over the last period
 
     @property
     def stamp(self):
@@ -59,10 +60,11 @@ class SmallPlant:
 
     def joints(self):
         q, q_dot = self.x[13:].reshape(2, self.n).copy()
-        return JointStates(self.stamp, q, q_dot, np.zeros(self.n))
+        return JointStates(self.stamp, q, q_dot, self.effort.copy())
 
     def step(self, command, effort):
         """One control period under commanded thrusts (m,) and joint torques (n,)."""
+        self.effort = np.array(effort)
         h = PERIOD / SUBSTEPS
         for _ in range(SUBSTEPS):
             stages = []
@@ -79,7 +81,7 @@ class SmallPlant:
 
     def _slope(self, x, wrench, effort):
         quaternion, nu, (q, q_dot) = x[3:7], x[7:13], x[13:].reshape(2, self.n)
-        tau = np.concatenate((wrench, effort))
+        tau = np.concatenate((wrench, effort + joint_passive_torque(self.model, q, q_dot)))
         acceleration = forward_dynamics(self.model, quaternion, nu, q, q_dot, tau)
         spin = 0.5 * quat_multiply(quaternion, np.append(nu[3:], 0.0))
         velocity = quat_to_matrix(quaternion) @ nu[:3] + self.current

@@ -142,14 +142,41 @@ def _carry(model, work, n, force, column, out):
 
 
 def differs(payload: Payload, other: Payload) -> bool:
-    """Whether a payload differs from another so much that a model with it is to be made anew."""
-    if payload.held != other.held:
-        return True
-    if not payload.held:
-        return False
+    """Whether what is held is so different that a model with it is to be made anew."""
     shift = np.abs(payload.position - other.position).max()
     return bool(
         abs(payload.weight - other.weight) > NOTICEABLE * abs(other.weight)
         or abs(payload.mass - other.mass) > NOTICEABLE * abs(other.mass)
         or shift > NOTICEABLE_SHIFT_M
     )
+
+
+class LoadedModel:
+    """The model of a vehicle with what its gripper holds, for whoever works with the model.
+
+    Args:
+        bare: table of the vehicle without payload.
+    """
+
+    def __init__(self, bare: Model) -> None:
+        self._bare = bare
+        self._payload: Payload | None = None  # in `model`
+        self.model: Model = bare
+        """Table with the payload that is held."""
+
+    def take(self, payload: Payload | None) -> bool:
+        """Let `model` have this payload; True where it is made anew.
+
+        It is where the payload is confirmed, let go, or noticeably other than before.
+        """
+        held = payload if payload is not None and payload.held else None
+        known = self._payload
+        if held is None and known is None:
+            return False
+        if held is not None and known is not None and not differs(held, known):
+            return False
+        self._payload = held
+        self.model = self._bare
+        if held is not None:
+            self.model = with_payload(self._bare, held.mass, held.weight, held.position)
+        return True

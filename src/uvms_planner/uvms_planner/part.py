@@ -39,6 +39,8 @@ class PlannerPart(Part):
         """One planner step; `plan` holds all of it until the next one."""
         odometry, joints = tick[topics.ODOMETRY.name], tick[topics.JOINT_STATES.name]
         self.plan = None
+        if (budget := tick[topics.DISTURBANCE_BUDGET.name]) is not None:
+            self.planner.hold(budget.payload)
         self.plan = self.planner.step(tick.stamp, odometry, joints)
         self._state = odometry, joints
         for reference in self.plan.references:

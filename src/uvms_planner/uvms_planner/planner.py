@@ -13,12 +13,14 @@ from uvms_core.signals import (
     JointStates,
     Odometry,
     PathGoal,
+    Payload,
     Reference,
     to_nanoseconds,
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import end_effector
 from uvms_dynamics.kernels.rotations import matrix_to_quat
+from uvms_dynamics.payload import LoadedModel
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
 from uvms_planner.follow import FollowedStep, PathFollower
@@ -53,6 +55,7 @@ class MotionPlanner:
         self._config = config
         self._joint_names = vehicle.joint_names
         self._solver = StepSolver(vehicle, config, seed)
+        self._loaded = LoadedModel(self._solver.model)
         self._step = to_nanoseconds(config.step_s)
         self._times = _sample_times(config)
         self._tick: int | None = None
@@ -62,6 +65,11 @@ class MotionPlanner:
         self._planned_error = 0.0
         self._max_planned_error = 0.0
         self._diagnostics: StepDiagnostics | None = None
+
+    def hold(self, payload: Payload | None) -> None:
+        """Plan from now on with what the gripper holds; None for nothing."""
+        if self._loaded.take(payload):
+            self._solver.model = self._loaded.model
 
     def accept(self, goal: PathGoal | JointGoal) -> None:
         """Begin a goal with the first segment that is not planned yet, or once at rest.

@@ -34,7 +34,13 @@ NU = POSE + 6
 
 @exact_kernel
 def unexplained_force(
-    model: Model, dt: float, before: Array, now: Array, thrust: Array, effort: Array
+    model: Model,
+    dt: float,
+    before: Array,
+    now: Array,
+    thrust: Array,
+    effort: Array,
+    smooth: tuple[Array, Array],
 ) -> tuple[Array, Array]:
     """Mean force (6+n,) over the interval beyond model and drives, and a payload's (6+n, 8).
 
@@ -44,6 +50,8 @@ def unexplained_force(
         before, now: (10 + 2 n,) moments at its ends.
         thrust: (6,) mean wrench of the thrusters.
         effort: (n,) torques of the drives.
+        smooth: vehicle (6,) and joint accelerations (n,) of a filter. In a payload's forces the
+            difference quotients would have the same noise as in `force`, and bias its mass.
 
     Returns:
         What the motion needs beyond thrusters, drives and the joints' friction, and what a payload
@@ -59,7 +67,7 @@ def unexplained_force(
     force = inverse_dynamics(model, quaternion, nu, nu_dot, q, q_dot, q_ddot)
     force[:6] -= thrust
     force[6:] -= effort + joint_passive_torque(model, q, q_dot)
-    return force, payload_forces(model, quaternion, nu, nu_dot, q, q_dot, q_ddot)
+    return force, payload_forces(model, quaternion, nu, smooth[0], q, q_dot, smooth[1])
 
 
 @exact_kernel

@@ -43,6 +43,11 @@ class ModelParts:
             *joints, self._x, self._P, self._F, self._Q,
         )  # fmt: skip
 
+    @property
+    def nu_dot(self) -> Array:
+        """Acceleration (6,) of the vehicle at the last step, body frame."""
+        return self._x[1]
+
     def _begin(self, odometry: Odometry) -> None:
         """From the measurement, with no acceleration."""
         self._begun = True

@@ -19,7 +19,7 @@ from uvms_core.signals import (
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
 from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
-from uvms_dynamics.payload import COLUMNS, differs, with_payload
+from uvms_dynamics.payload import COLUMNS, LoadedModel
 from uvms_observer.disturbance.bandwidth import external_bandwidth
 from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
 from uvms_observer.disturbance.model_parts import ModelParts
@@ -50,7 +50,7 @@ class ModelObserver:
     def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
         self._vehicle, self._config = vehicle, config
         self._model: Model = build_model(vehicle)
-        self._loaded = self._model
+        self._loaded = LoadedModel(self._model)
         self._joint_names = vehicle.joint_names
         self._joints = JointPrediction(vehicle, config.joint_jerk_rad_s3, config.joint_age_limit_s)
         self._parts = ModelParts(np.array([config.vehicle_jerk_m_s3, config.vehicle_jerk_rad_s3]))
@@ -80,7 +80,7 @@ class ModelObserver:
         motion = self._joints.step(joints, odometry.stamp)
         external, sigma = self._observe(dt, odometry, motion, joints.effort, achieved)
         self._stamp = odometry.stamp
-        restoring, coupling, held = self._parts.step(self._loaded, dt, odometry, motion)
+        restoring, coupling, held = self._parts.step(self._loaded.model, dt, odometry, motion)
         total = restoring + held
         if self._config.external:
             total += external
@@ -128,6 +128,8 @@ class DisturbanceObserver(ModelObserver):
         self._lag = ThrustLag(vehicle)
         self._rate_variance = float(encoder_variances(vehicle)[1])
         self._before: Array | None = None
+        self._feels = False
+        """Whether the drives report torques; without, the joints' rows mean nothing."""
         self._filter = np.zeros((6, 1 + COLUMNS))
         self._theta = np.zeros(COLUMNS)  # of the payload in the loaded model
         self._external, self._sigma = np.zeros(6), np.zeros(6)
@@ -147,8 +149,10 @@ class DisturbanceObserver(ModelObserver):
             return self._external.copy(), self._sigma
         if dt != self._dt:
             self._set_interval(dt)
+        self._feels = bool(effort.any())
         thrust = self._lag.step(dt, achieved.wrench)
-        force, forces = unexplained_force(self._model, dt, before, now, thrust, effort)
+        smooth = self._parts.nu_dot, motion.q_ddot
+        force, forces = unexplained_force(self._model, dt, before, now, thrust, effort, smooth)
         noise = momentum_noise(self._model, now, odometry.twist_covariance, self._rate_variance)
         self._explain(dt, force, forces, noise)
         self._external = follow_external(self._filter, self._gain, force, forces, self._theta)
@@ -187,7 +191,6 @@ class CombinedObserver(DisturbanceObserver):
     def __init__(self, vehicle: Vehicle, config: ObserverConfig) -> None:
         super().__init__(vehicle, config)
         self._estimator = PayloadEstimator(vehicle)
-        self._in_model = self._estimator.payload
         self._monitor = ThrusterMonitor(vehicle)
         self._allocation: Allocation | None = None
 
@@ -199,16 +202,11 @@ class CombinedObserver(DisturbanceObserver):
         if (told := self._allocation) is not None:
             wrench = force[:6] - forces[:6] @ self._theta
             self._monitor.step(dt, wrench, NOT_KNOWN, told.thrust, told.effectiveness)
-        if self._estimator.step(dt, force, forces, noise):
-            held = self._estimator.payload
-            if differs(held, self._in_model):
-                self._take_in(held)
-
-    def _take_in(self, held: Payload) -> None:
-        self._in_model = held
-        phi = np.array([held.weight, *held.position, held.mass])
-        self._theta = theta_of(phi)
-        self._loaded = with_payload(self._model, held.mass, held.weight, held.position)
+        if not (self._feels and self._estimator.step(dt, force, forces, noise)):
+            return
+        payload = self._estimator.payload
+        if self._loaded.take(payload):
+            self._theta = theta_of(np.array([payload.weight, *payload.position, payload.mass]))
 
     def _payload(self) -> Payload:
         return self._estimator.payload

@@ -54,7 +54,7 @@ class PayloadEstimator:
         )
         self._offset, self._B = np.zeros((count, rows)), np.zeros((count, rows, COLUMNS))
         self._L, self._d = np.zeros((count, COLUMNS, COLUMNS)), np.zeros((count, COLUMNS))
-        self._energy = np.zeros(count)
+        self._energy, self._felt = np.zeros(count), np.zeros(count)
         self._b, self._s = np.zeros(rows), np.zeros(rows)
         self._y, self._S = np.zeros(rows), np.zeros((rows, COLUMNS))
         self._time, self._blocks, self._seen = 0.0, 0, 0
@@ -91,7 +91,7 @@ class PayloadEstimator:
         self._seen += 1
         follow_block(
             y, S, variances, self._b, self._s, self.theta,
-            self._offset, self._B, self._L, self._d, self._energy, newest,
+            self._offset, self._B, self._L, self._d, self._energy, self._felt, newest,
         )  # fmt: skip
         if self._blocks > 1.0 / FORGET and self._energy[:-1].max() > LIKELY:
             self._decide(newest, y)
@@ -110,7 +110,9 @@ class PayloadEstimator:
             self._grasp(c, phi, covariance)
 
     def _is_ripe(self, c: int, newest: int) -> bool:
-        return c >= 0 and (newest - c) % CANDIDATES >= LEAST_BLOCKS
+        """Whether a candidate has been seen long enough, by the joints as well as by the hull."""
+        is_old = c >= 0 and (newest - c) % CANDIDATES >= LEAST_BLOCKS
+        return is_old and self._felt[c] > LIKELY
 
     def _is_let_go(self, newest: int) -> bool:
         """Whether the loss of all that is held explains a change."""
@@ -156,7 +158,7 @@ class PayloadEstimator:
         self.theta, self.payload = np.zeros(COLUMNS), NOTHING_HELD
 
     def _forget_candidates(self) -> None:
-        for table in (self._energy, self._L, self._d, self._B, self._offset):
+        for table in (self._energy, self._felt, self._L, self._d, self._B, self._offset):
             table[:] = 0.0
 
     def _hold(self, phi: Array, covariance: Array) -> None:

@@ -38,7 +38,7 @@ SLOWEST = 0.02
 @exact_kernel
 def follow_block(
     y: Array, S: Array, noise: Array, b: Array, s: Array, theta: Array,
-    offset: Array, B: Array, L: Array, d: Array, energy: Array, newest: int,
+    offset: Array, B: Array, L: Array, d: Array, energy: Array, felt: Array, newest: int,
 ) -> None:  # fmt: skip
     """Take in the mean of a block, in place.
 
@@ -52,12 +52,14 @@ def follow_block(
         theta: (8,) payload that is taken as held; zero for none.
         offset, B, L, d, energy: (c, m), (c, m, 8), (c, 8, 8), (c, 8), (c,) of the candidates, the
             last one of which is the payload held.
+        felt: (c,) share of the energy that is in the joints' rows.
         newest: the candidate whose grasp is in this block.
     """
     rows, columns = S.shape
     count = B.shape[0]
     own = count - 1
     B[newest], L[newest], d[newest], offset[newest], energy[newest] = 0.0, 0.0, 0.0, 0.0, 0.0
+    felt[newest] = 0.0
     G = np.empty(columns)
     for i in range(rows):
         variance = max(s[i], noise[i] * (1.0 + SLOWEST))
@@ -84,6 +86,8 @@ def follow_block(
                     L[c, k, j] += G[k] * trust * G[j]
                 B[c, i, k] += gain * G[k]
             energy[c] += weight * gamma * gamma
+            if i >= 6:
+                felt[c] += weight * gamma * gamma
             offset[c, i] *= 1.0 - gain
         b[i] += gain * raw
         s[i] = variance + FORGET * (min(left * left, CLIP * variance) - variance)
