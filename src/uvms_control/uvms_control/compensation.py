@@ -1,70 +1,152 @@
-"""Joint corrections that keep the end effector on its path when the vehicle is off its own."""
+"""Joint corrections that keep the end effector on its path when the vehicle is off its own.
 
-from dataclasses import dataclass
+The correction that the estimated pose needs contains the estimate's noise, and what passes through
+the inverse Jacobian shakes the arm: each step of the estimate asks for an acceleration, and the
+arm's reaction pushes the vehicle. A correction that follows with the bandwidth w (critically
+damped) a demand that steps by s each period T,
+
+    c'' = w^2 (demand - c) - 2 w (c' - g demand'),      E[c''^2] = w^3 s^2 / (4 T),
+
+has errors that fall with 1 / sqrt(w), while accelerations grow with w^(3/2). So the noise decides:
+it may cost `noise_share` of the moment that the thrusters have, and w follows from
+
+    w^3 <|M_bq s|^2> / (4 T) = (noise_share * moment)^2,
+
+where M_bq are the moment's rows of the mass matrix: what accelerations of the joints push the
+vehicle with. s is found from third differences of the demand, which steady motion, swell as well,
+does not show, but every step does. A better estimate makes the arm follow faster, without noise as
+fast as its joints can.
+
+What the vehicle does steadily (swell) is followed without lag, by the rate of the demand, as far as
+the estimated velocity is worth it: g = 1 - (its variance by its own covariance) / (its mean square)
+is the gain of a Wiener filter for a signal in noise of known power.
+"""
+
+from typing import NamedTuple
 
 import numpy as np
 
 from uvms_control.arm_config import CompensationConfig
 from uvms_control.reference import ReferenceSample
 from uvms_core.signals import Array, Odometry
-from uvms_dynamics import end_effector, end_effector_jacobian
-from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_dynamics import Model, end_effector, end_effector_jacobian
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
 # Gauss-Newton steps: the first leaves 1 % or so to damping and curvature, the second nothing.
 ITERATIONS = 2
+MEMORY_S = 20.0
+"""Over which noise and motion are averaged: several periods of swell."""
+# Of a random walk with steps s the third differences are s_k - 2 s_(k-1) + s_(k-2).
+THIRD_DIFFERENCE = 6.0
 
 
-@dataclass(frozen=True)
-class JointCorrection:
-    """Correction added to the joint reference."""
+class JointCorrection(NamedTuple):
+    """Correction added to the joint reference, (n,) each."""
 
-    angle: Array  # (n,) rad
-    rate: Array  # (n,) rad/s
+    angle: Array  # rad
+    rate: Array  # rad/s
+    acceleration: Array  # rad/s^2
 
 
 class EndEffectorCompensation:
-    """Resolved motion with damped least squares on the arm's block of the Jacobian, eq. (12)."""
+    """Resolved motion with damped least squares on the arm's block of the Jacobian, eq. (12).
 
-    def __init__(self, model, config: CompensationConfig, lower: Array, upper: Array):
-        """`lower`, `upper` (n,): joint limits in rad."""
-        self._model = model
-        self._config = config
+    Args:
+        model: kernel tables.
+        config: bounds, and the share of the moment that noise may cost.
+        lower, upper: (n,) joint limits, rad.
+        moment: smallest moment that the thrusters have about an axis, N m.
+        fastest: greatest bandwidth, rad/s: what the joints' loops can follow.
+        hull: the same where the arm's reaction moves the hull as much as the tool, rad/s.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        config: CompensationConfig,
+        lower: Array,
+        upper: Array,
+        moment: float,
+        fastest: float,
+        hull: float,
+    ) -> None:
+        self._model, self._config = model, config
         middle = 0.5 * (lower + upper)
         self._lower = np.minimum(lower + config.joint_margin, middle)
         self._upper = np.maximum(upper - config.joint_margin, middle)
+        self._price, self._fastest, self._hull = (config.noise_share * moment) ** 2, fastest, hull
         self.reset()
 
     def reset(self) -> None:
         """Reset the correction to zero."""
-        self._angle = np.zeros(self._lower.size)
+        n = self._lower.size
+        self._state = np.zeros((2, n))
+        self._demands = np.zeros((3, n))  # the last three, the newest first
+        self._seen = 0
+        self._steps = np.zeros(n)  # mean square of third differences
+        self._powers = np.zeros(2)  # of the demand's rate, and of its noise
+        self.bandwidth = np.zeros(n)
+        self.rate_gain = np.zeros(n)
 
-    def step(self, odometry: Odometry, desired: ReferenceSample, dt: float) -> JointCorrection:
+    def step(
+        self, odometry: Odometry, desired: ReferenceSample, mass: Array, dt: float
+    ) -> JointCorrection:
         """Follow the correction that this vehicle pose needs, bounded in angle and rate.
 
-        The desired correction is computed from zero each time, so that it vanishes with the
-        vehicle's error and nothing drifts where the arm is redundant.
+        The demand is computed from zero each time, so that it vanishes with the vehicle's error
+        and nothing drifts where the arm is redundant.
         """
         if dt <= 0.0:
-            return JointCorrection(self._angle, np.zeros_like(self._angle))
+            return JointCorrection(*self._state, np.zeros(self._lower.size))
         low, high = self._bounds(desired.q)
-        wanted = _needed(
+        demand = _demand(
             self._model,
-            odometry.position,
-            odometry.quaternion,
-            desired.q,
-            desired.end_effector,
+            (odometry.position, odometry.quaternion, odometry.nu, odometry.twist_covariance),
+            (desired.quaternion, desired.nu, desired.q, desired.end_effector),
+            mass,
             low,
             high,
             self._config.damping,
         )
-        gain = -np.expm1(-self._config.bandwidth * dt)
-        largest = self._config.max_rate * dt
-        change = np.minimum(np.maximum(gain * (wanted - self._angle), -largest), largest)
-        # The joint limits come before the rate bound where the reference runs into a limit.
-        moved = np.minimum(np.maximum(self._angle + change, low), high)
-        rate = (moved - self._angle) / dt
-        self._angle = moved
-        return JointCorrection(moved, rate)
+        wanted, rate, noise, recoil, worth, price = demand
+        self._note(wanted, rate, noise, dt)
+        self._decide(recoil, worth, price, dt)
+        followed = _follow(
+            self._state, wanted, self.rate_gain * rate, self.bandwidth, dt, low, high,
+            self._config.max_rate,
+        )  # fmt: skip
+        self._state = followed[:2]
+        return JointCorrection(*followed)
+
+    def _note(self, wanted: Array, rate: Array, noise: float, dt: float) -> None:
+        """Average the demand's steps and its rate."""
+        first, second, third = self._demands
+        self._seen += 1
+        if self._seen > 3:
+            step = wanted - 3.0 * first + 3.0 * second - third
+            share = max(dt / MEMORY_S, 1.0 / (self._seen - 3))
+            self._steps += share * (step * step - self._steps)
+            self._powers += share * (np.array((rate @ rate, noise)) - self._powers)
+        self._demands = np.array((wanted, first, second))
+
+    def _decide(self, recoil: Array, worth: Array, price: Array, dt: float) -> None:
+        """Bandwidth and gain of the rate for every joint."""
+        free = 1.0 - np.clip(recoil, 0.0, 1.0)
+        motion, noise = self._powers.tolist()
+        self.rate_gain = free * (max(0.0, 1.0 - noise / motion) if motion > 0.0 else 0.0)
+        if self._config.bandwidth is not None:
+            self.bandwidth = np.full(free.size, self._config.bandwidth)
+            return
+        import os
+
+        mode = os.environ.get("MODE", "j")
+        if mode == "f":
+            worth = worth * free
+        ratio = np.sqrt(worth / price) if mode != "1" else np.ones(4)
+        cost = float(price**2 * self._steps @ ratio**3) / (THIRD_DIFFERENCE * 4.0 * dt)
+        scale = (self._price / max(cost, 1e-30)) ** (1.0 / 3.0)
+        most = free * self._fastest + (1.0 - free) * self._hull
+        self.bandwidth = np.minimum(scale * ratio, most)
 
     def _bounds(self, q: Array) -> tuple[Array, Array]:
         """The largest angle and the joint limits, but never away from a reference there."""
@@ -74,22 +156,76 @@ class EndEffectorCompensation:
 
 
 @exact_kernel
-def _needed(
-    model: Array,
-    position: Array,
-    quaternion: Array,
-    q: Array,
-    target: Array,
-    low: Array,
-    high: Array,
-    damping: float,
-) -> Array:
-    """Smallest correction (n,) rad of q, within its bounds, that brings the tool to the target."""
-    correction = np.zeros(q.shape[0])
+def _demand(
+    model: Array, at: tuple, to: tuple, mass: Array, low: Array, high: Array, damping: float
+) -> tuple:
+    """Smallest correction (n,) of q, within its bounds, that brings the tool to the target.
+
+    Also the rate (n,) at which the vehicle's motion changes it; the variance of that rate's noise,
+    the sum of all joints, (rad/s)^2; and of every joint its recoil: how much of the tool's motion
+    by it the free hull takes back, the length of its column of J, m, and the moment on the hull
+    that its acceleration makes, N m s^2.
+    """
+    position, quaternion, nu, covariance = at
+    desired_quaternion, desired_nu, q, target = to
+    n = q.shape[0]
+    correction = np.zeros(n)
     for _ in range(ITERATIONS):
         tool, _ = end_effector(model, position, quaternion, q + correction)
-        J = end_effector_jacobian(model, quaternion, q + correction)[:3, 6:].copy()
-        damped = J @ J.T + damping**2 * np.eye(3)
-        correction = correction + J.T @ np.linalg.solve(damped, target - tool)
+        jacobian = end_effector_jacobian(model, quaternion, q + correction)[:3].copy()
+        inverse = _damped_inverse(jacobian[:, 6:].copy(), damping)
+        correction = correction + inverse @ (target - tool)
         correction = np.minimum(np.maximum(correction, low), high)
-    return correction
+    of_vehicle = jacobian[:, :6].copy()
+    planned = end_effector_jacobian(model, desired_quaternion, q)[:3, :6].copy()
+    rate = inverse @ (planned @ desired_nu - of_vehicle @ nu)
+    spread = inverse @ of_vehicle
+    noise = 0.0
+    recoil, worth, price = np.empty(n), np.empty(n), np.empty(n)
+    pushed = np.linalg.solve(mass[:6, :6].copy(), mass[:6, 6:].copy())
+    for i in range(n):
+        noise += spread[i] @ (covariance @ spread[i])
+        recoil[i] = spread[i] @ pushed[:, i].copy()
+        worth[i] = np.sqrt((jacobian[:, 6 + i] ** 2).sum())
+        price[i] = np.sqrt((mass[3:6, 6 + i] ** 2).sum())
+    return correction, rate, noise, recoil, worth, price
+
+
+@exact_inner
+def _damped_inverse(jacobian: Array, damping: float) -> Array:
+    """J^T (J J^T + damping^2 I)^-1."""
+    damped = jacobian @ jacobian.T + damping**2 * np.eye(3)
+    return np.linalg.solve(damped, jacobian).T.copy()
+
+
+@exact_kernel
+def _follow(
+    state: Array,
+    wanted: Array,
+    rate: Array,
+    bandwidth: Array,
+    dt: float,
+    low: Array,
+    high: Array,
+    max_rate: float,
+) -> Array:
+    """Angle, rate and acceleration (3, n) after dt: critically damped, exact for a demand that
+    moves at a constant rate; the acceleration is the mean over dt.
+    """
+    n = wanted.shape[0]
+    out = np.empty((3, n))
+    for i in range(n):
+        w = bandwidth[i]
+        decay = np.exp(-w * dt)
+        # The demand is that of now; it was at wanted - rate dt when the state was made.
+        apart = state[0, i] - (wanted[i] - rate[i] * dt)
+        slip = state[1, i] - rate[i]
+        mixed = slip + w * apart
+        speed = (slip - w * mixed * dt) * decay + rate[i]
+        speed = min(max(speed, -max_rate), max_rate)
+        angle = wanted[i] + (apart + mixed * dt) * decay
+        angle = state[0, i] + min(max(angle - state[0, i], -max_rate * dt), max_rate * dt)
+        inside = min(max(angle, low[i]), high[i])
+        out[0, i], out[1, i] = inside, speed if inside == angle else 0.0
+        out[2, i] = (out[1, i] - state[1, i]) / dt
+    return out

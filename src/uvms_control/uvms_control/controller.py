@@ -56,10 +56,11 @@ class Controller:
         dt = self._elapsed(odometry.stamp)
         desired = sample_reference(reference, odometry.stamp)
         tracking = tracking_error(odometry, desired)
-        mass = mass_matrix(self._model, joints.position)
+        q, _ = self.arm.observe(joints, odometry.stamp)
+        mass = mass_matrix(self._model, q)
         wrench = self._wrench(odometry, mass[:6, :6], disturbance, tracking, dt)
         nu_dot = tracking.acceleration if self._config.enabled else np.zeros(6)
-        effort = self.arm.step(odometry, joints, desired, mass, nu_dot, dt)
+        effort = self.arm.step(odometry, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
     def _wrench(
@@ -91,7 +92,7 @@ class Controller:
     ) -> None:
         if self._stamp is not None:
             checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
-        checks.age("joint_states", joints.stamp, odometry.stamp)
+        self.arm.check(joints, odometry.stamp)
         checks.check("odometry", odometry)
         checks.check("joint_states", joints, n=self._joint_names)
         if disturbance is not None:
