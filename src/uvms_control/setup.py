@@ -33,7 +33,11 @@ setup(
             "controller = uvms_control.nodes.controller:ControllerNode",
             "thrust_allocator = uvms_control.nodes.thrust_allocator:ThrustAllocatorNode",
         ],
-        "uvms.controllers": ["s_surface = uvms_control.controller:Controller"],
+        "uvms.controllers": [
+            "default = uvms_control.controller:Controller",
+            "paper = uvms_control.paper_controller:PaperController",
+            "s_surface = uvms_control.paper_controller:PaperController",
+        ],
         "uvms.allocators": [
             "weighted_least_squares = uvms_control.allocation:ThrustAllocator",
         ],

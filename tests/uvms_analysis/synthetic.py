@@ -25,6 +25,7 @@ from uvms_core.signals import (
     Odometry,
     PathGoal,
     Reference,
+    Stability,
     ThrusterCommand,
     Wrench,
     to_nanoseconds,
@@ -52,6 +53,7 @@ class Known:
     with_path: bool = True
     name_start: bool = True
     namespace: str = ""
+    with_stability: bool = True
 
 
 def make_path(known: Known, start: np.ndarray) -> PathGoal:
@@ -150,6 +152,11 @@ class Synthetic:
         log.write(
             topics.ALLOCATION, Allocation(stamp, thrust, wrench.wrench, 0 * restoring, saturated)
         )
+        if self.known.with_stability:
+            # V halves every half second; the condition holds at even ticks.
+            value = float(4.0 * 0.5 ** (2.0 * time))
+            rate = float(-2.0 * np.log(2.0) * value)
+            log.write(topics.STABILITY, Stability(stamp, value, rate, 1.0, 2.0 - number % 2 * 1.5))
         before = max(stamp - to_nanoseconds(PERIOD), 0)
         applied = AppliedThrust(stamp, thrust, thrust, before, before, number == 0, number == 0)
         log.write(topics.APPLIED_THRUST, applied)

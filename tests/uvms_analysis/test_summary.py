@@ -83,6 +83,25 @@ def test_forces_and_computing_time(summary):
     assert summary["planner_step_ms"]["p99"] == pytest.approx(24.76)
 
 
+def test_stability_of_the_loop(summary):
+    # V halves every half second from 4 on; 121 of 241 ticks have 2 W of supply for 1 W of demand.
+    found = summary["stability"]
+    assert found["condition_holds"] == pytest.approx(121 / 241)
+    assert found["lyapunov_falls"] == 1.0
+    assert found["lyapunov_max"] == 4.0
+    assert found["lyapunov_end"] == pytest.approx(4.0 * 0.5**14)
+    squares = 16.0 * (1.0 - 0.5 ** (241 / 5)) / (1.0 - 0.5**0.2)
+    assert found["lyapunov_rms"] == pytest.approx(np.sqrt(squares / 241))
+
+
+def test_a_log_without_stability_says_why_its_figures_are_missing(tmp_path):
+    known = Known(duration=3.0, path_duration=2.0, with_stability=False)
+    write_log(tmp_path / "run.mcap", known)
+    summary = summarise(tmp_path / "run.mcap", wall_s=1.0)
+    assert set(summary["stability"].values()) == {None}
+    assert "has no control/stability" in summary["missing"]["stability"]
+
+
 def test_the_start_of_the_path_is_found_where_the_planner_does_not_report_it(tmp_path, summary):
     write_log(tmp_path / "run.mcap", Known(duration=12.0, path_duration=10.0, name_start=False))
     other = summarise(tmp_path / "run.mcap", wall_s=4.0)

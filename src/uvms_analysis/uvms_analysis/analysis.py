@@ -107,6 +107,16 @@ class Analysis:
         return self.log.series(topics.ALLOCATION)
 
     @cached_property
+    def stability(self) -> Series:
+        """The controller's Lyapunov function, its rate and both sides of the condition of (29)."""
+        if not self.log.has(topics.STABILITY):
+            raise LogError(
+                f"log {self.log.path}: has no {topics.STABILITY.name}: its controller does not"
+                " report it"
+            )
+        return self.log.series(topics.STABILITY)
+
+    @cached_property
     def rpy_deg(self) -> Array:
         """True roll, pitch and yaw, (k, 3) degrees."""
         return np.rad2deg(np.array([quat_to_rpy(q) for q in self.truth.quaternion]))

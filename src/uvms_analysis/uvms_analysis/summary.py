@@ -14,6 +14,7 @@ from uvms_analysis.happened import events_of, not_reached
 from uvms_analysis.log import plant_record
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
+from uvms_analysis.lyapunov import NAMES, stability
 from uvms_analysis.outcome import judge, judged_by
 from uvms_core import topics
 from uvms_core.signals import Array
@@ -30,6 +31,7 @@ LOADED = (
     topics.REFERENCE,
     topics.ALLOCATION,
     topics.APPLIED_THRUST,
+    topics.STABILITY,
     topics.SENSOR_GAPS,
     topics.DIAGNOSTICS,
 )
@@ -99,6 +101,9 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
         "lockstep_timeouts": figures.of("lockstep_timeouts", lambda: run.lockstep_timeouts),
     }
     summary |= _precision(run, figures) | _effort(run, figures)
+    summary["stability"] = figures.of(
+        "stability", lambda: stability(run, at_end), dict.fromkeys(NAMES)
+    )
     summary["log_fault"] = log.fault or None
     summary["rejected_messages"] = {name: len(items) for name, items in log.rejected.items()}
     summary["incidents"] = [] if end is None else list(end.incidents)

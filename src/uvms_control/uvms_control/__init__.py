@@ -7,6 +7,7 @@ from uvms_control.config import (
     ArmControlConfig,
     CompensationConfig,
     ControlConfig,
+    GainConfig,
     VehicleControlConfig,
 )
 from uvms_control.controller import Controller
@@ -29,6 +30,7 @@ __all__ = [
     "ControlLaw",
     "ControlSetupError",
     "Controller",
+    "GainConfig",
     "ReferenceSample",
     "SSurface",
     "ThrustAllocator",

@@ -8,7 +8,7 @@ from pydantic import Field
 from uvms_control.allocator_config import AllocatorConfig
 from uvms_control.arm_config import ArmControlConfig, CompensationConfig
 from uvms_control.interfaces import ControlLaw
-from uvms_control.vehicle_config import VehicleControlConfig
+from uvms_control.vehicle_config import GainConfig, VehicleControlConfig
 from uvms_core import registry
 from uvms_core.plugin import PluginConfig, Slot
 
@@ -17,6 +17,7 @@ __all__ = [
     "ArmControlConfig",
     "CompensationConfig",
     "ControlConfig",
+    "GainConfig",
     "VehicleControlConfig",
 ]
 
@@ -28,9 +29,10 @@ class ControlConfig(PluginConfig):
     words: ClassVar[Mapping[str, Mapping[str, Any]]] = {"off": {"enabled": False}}
 
     law: str = Field(
-        default="s_surface",
-        description="control law: s_surface (eq. (22) and (19)), that of an installed package, or"
-        " a class as my_package.my_module:MyLaw, which may ignore the other fields of this section",
+        default="default",
+        description="control law: default (righting moment and damping stay with the hull, gains by"
+        " rule), paper (eq. (22) and (19) as printed), that of an installed package, or a class as"
+        " my_package.my_module:MyLaw, which may ignore the other fields of this section",
     )
     enabled: bool = Field(
         default=True,
@@ -43,6 +45,7 @@ class ControlConfig(PluginConfig):
         default=True,
         description="move the joint reference so that the estimated end effector stays on its path",
     )
+    gains: GainConfig = GainConfig()
     vehicle: VehicleControlConfig = VehicleControlConfig()
     arm: ArmControlConfig = ArmControlConfig()
     compensation: CompensationConfig = CompensationConfig()

@@ -1,44 +1,87 @@
 """The controller of vehicle and arm: one tick from estimated state and reference to commands."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from uvms_control.arm_law import ArmLaw
 from uvms_control.config import ControlConfig
-from uvms_control.reference import sample_reference
+from uvms_control.controlled_axes import axes_of
+from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
+from uvms_control.reference import ReferenceSample, sample_ahead, sample_reference
+from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
-from uvms_control.vehicle_controller import VehicleController
+from uvms_control.vehicle_law import VehicleLaw, at_reference, joints_ahead
 from uvms_core import checks
 from uvms_core.signals import (
+    Allocation,
     Array,
+    DisturbanceBudget,
     JointCommand,
     JointStates,
     Odometry,
     Reference,
+    Stability,
     Wrench,
+    to_nanoseconds,
     to_seconds,
 )
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics import build_model, hull_bias_wrench, mass_matrix
 
 
 class Controller:
-    """Vehicle by eq. (22), arm by eq. (19); see `VehicleController` and `ArmLaw`."""
+    """Vehicle by `VehicleLaw`, arm by `ArmLaw`: the law `default`.
+
+    Gains follow from the vehicle file and the control period. A law that was not told the period
+    (`prepare`) takes that of its first two steps.
+    """
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         self._config = config
+        self._vehicle = vehicle
         self._joint_names = vehicle.joint_names
         self._model = build_model(vehicle)
-        self.vehicle = VehicleController(self._model, config.vehicle)
+        self._law = VehicleLaw()
+        self._axes = axes_of(vehicle)
+        self._effectiveness = np.empty(0)
+        self._gains: VehicleGains | None = None
+        self._monitor: StabilityMonitor | None = None
+        self._lead = 0
         self.arm = ArmLaw(vehicle, self._model, config)
+        self._budget: DisturbanceBudget | None = None
         self.reset()
+
+    def prepare(self, period: float) -> None:
+        """Work out the gains for a control period in s.
+
+        Raises:
+            ControlSetupError: the loop would not be stable with gains of the configuration.
+        """
+        self._gains = vehicle_gains(self._vehicle, period, self._config.gains)
+        self._monitor = StabilityMonitor(self._gains.stiffness, self._gains.damping)
+        self._lead = to_nanoseconds(thrust_delay(self._axes, period, self._config.gains))
 
     def reset(self) -> None:
         """Return to the state before the first step."""
         self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
-        self.vehicle.reset()
+        self.stability: Stability | None = None
+        self._lacking = np.zeros(6)  # of the last wrench, beyond the thrusters' limits
+        self._law.reset()
         self.arm.reset()
+
+    def inform(self, budget: DisturbanceBudget, allocation: Allocation | None) -> None:
+        """What explains the disturbance, and what the thrusters gave a tick ago."""
+        self._budget = budget
+        self.arm.inform(budget)
+        if allocation is None:
+            return
+        self._lacking = allocation.residual
+        if not np.array_equal(allocation.effectiveness, self._effectiveness):
+            self._effectiveness = allocation.effectiveness
+            self._axes = axes_of(self._vehicle, allocation.effectiveness)
 
     def step(
         self,
@@ -55,28 +98,77 @@ class Controller:
         self._check(odometry, joints, disturbance, reference)
         dt = self._elapsed(odometry.stamp)
         desired = sample_reference(reference, odometry.stamp)
-        tracking = tracking_error(odometry, desired)
         q, _ = self.arm.observe(joints, odometry.stamp)
         mass = mass_matrix(self._model, q)
-        wrench = self._wrench(odometry, mass[:6, :6], disturbance, tracking, dt)
-        nu_dot = tracking.acceleration if self._config.enabled else np.zeros(6)
+        nu_dot, wrench = np.zeros(6), np.zeros(6)
+        if self._config.enabled:
+            inertia = np.ascontiguousarray(mass[:6, :6])
+            known = self._known(disturbance)
+            tracking, wrench = self._vehicle_wrench(
+                odometry, q, inertia, known, desired, reference, dt
+            )
+            self._judge(odometry, inertia, disturbance, tracking, wrench)
+            nu_dot = tracking.acceleration
         effort = self.arm.step(odometry, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
-    def _wrench(
+    def _judge(
         self,
         odometry: Odometry,
         inertia: Array,
         disturbance: Wrench | None,
         tracking: TrackingError,
-        dt: float,
-    ) -> Array:
-        if not self._config.enabled:
+        wrench: Array,
+    ) -> None:
+        """Stability of this tick, with the wrench as far as the thrusters give it."""
+        if self._monitor is None:
+            return
+        acts = np.zeros(6) if disturbance is None else disturbance.wrench
+        bias = hull_bias_wrench(self._model, odometry.nu)
+        needed = inertia @ tracking.acceleration + bias - acts
+        given = wrench - self._lacking
+        self.stability = self._monitor.at(
+            odometry.stamp, tracking.error, tracking.rate, inertia, needed, given
+        )
+
+    def _known(self, disturbance: Wrench | None) -> Array:
+        """F_dis (6,), what acts ON the vehicle; zeros where it is not fed forward."""
+        if disturbance is None or not self._config.observer:
             return np.zeros(6)
-        known = np.zeros(6)
-        if self._config.observer and disturbance is not None:
-            known = disturbance.wrench
-        return self.vehicle.step(odometry, inertia, known, tracking, dt)
+        return disturbance.wrench
+
+    def _vehicle_wrench(
+        self,
+        odometry: Odometry,
+        q: Array,
+        mass: Array,
+        known: Array,
+        desired: ReferenceSample,
+        reference: Reference,
+        dt: float,
+    ) -> tuple[TrackingError, Array]:
+        """Errors with the reference's acceleration, and the wrench (6,)."""
+        if self._gains is None and dt > 0.0:
+            self.prepare(dt)
+        ahead = sample_ahead(reference, odometry.stamp, self._lead)
+        tracking = tracking_error(odometry, replace(desired, nu_dot=ahead.nu_dot))
+        if self._gains is None:
+            return tracking, -known
+        if known.any():
+            known = at_reference(
+                self._model,
+                known,
+                self._budget,
+                odometry,
+                tracking.error,
+                self._axes.is_controlled,
+                q,
+                joints_ahead(q, desired, ahead),
+            )
+        wrench = self._law.step(
+            self._model, self._axes, self._gains, odometry, mass, tracking, known, dt
+        )
+        return tracking, wrench
 
     def _elapsed(self, stamp: int) -> float:
         """Seconds since the last step; 0 at the first."""

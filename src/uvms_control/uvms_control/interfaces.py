@@ -27,8 +27,9 @@ class ControlLaw(Protocol):
     A law that wants to know more has a method `inform(budget, allocation)`, which is called before
     each step: the `DisturbanceBudget` of the tick, with payload and thruster health where the
     observer looks for them, and the `Allocation` of the tick before (None at the first), with what
-    the thrusters achieved. A law with an attribute `stability` (`Stability` or None after a step)
-    has it published and logged.
+    the thrusters achieved. A method `prepare(period)`, in s, is called once before the first step:
+    there a law works out its gains, or refuses those of the configuration. A law with an attribute
+    `stability` (`Stability` or None after a step) has it published and logged.
     """
 
     @abstractmethod

@@ -9,7 +9,7 @@ from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_core import topics
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
-from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench
+from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench, to_seconds
 from uvms_core.tick_gate import Covering, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 
@@ -22,8 +22,8 @@ class ControllerPart(Part):
     left_to_reader = (topics.JOINT_COMMAND,)  # the plant has brakes
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig, period: int) -> None:
-        self._vehicle, self._config = vehicle, config
-        self.law: ControlLaw = create(config, vehicle)
+        self._vehicle, self._config, self._period = vehicle, config, period
+        self.law = self._make_law()
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),
@@ -50,7 +50,13 @@ class ControllerPart(Part):
 
     def restart(self, reason: str) -> None:
         """The law restarts: its integrals and filters are gone."""
-        self.law = create(self._config, self._vehicle)
+        self.law = self._make_law()
+
+    def _make_law(self) -> ControlLaw:
+        law: ControlLaw = create(self._config, self._vehicle)
+        if prepare := getattr(law, "prepare", None):
+            prepare(to_seconds(self._period))
+        return law
 
     def safe(self, tick: Tick) -> Iterator[Output]:
         """No wrench and no torque."""

@@ -6,7 +6,7 @@ linearly between the samples. At a sample every value is exactly the planner's. 
 reference the nearest end is held at rest.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -49,6 +49,17 @@ def sample_reference(reference: Reference, stamp: int) -> ReferenceSample:
     if to_nanoseconds(float(reference.times[nearest])) == since:
         return _sample(reference, nearest)
     return _between(reference, int(np.searchsorted(reference.times, t, side="right")) - 1, t)
+
+
+def sample_ahead(reference: Reference, stamp: int, lead: int) -> ReferenceSample:
+    """The joints and accelerations `lead` ns after a stamp, as far as they are planned.
+
+    Beyond the last sample the joints go on with its velocity: the next reference takes over within
+    a few ticks, and to stop them there would be the greater error.
+    """
+    at = max(min(stamp + lead, reference.end), reference.stamp)
+    sample, beyond = sample_reference(reference, at), to_seconds(stamp + lead - at)
+    return replace(sample, q=sample.q + max(beyond, 0.0) * sample.q_dot)
 
 
 def _sample(reference: Reference, i: int) -> ReferenceSample:

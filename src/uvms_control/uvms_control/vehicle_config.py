@@ -6,8 +6,49 @@ from uvms_control.six import SixNotNegative, SixPositive
 from uvms_core.config import Config
 
 
+class GainConfig(Config):
+    """Gains of the vehicle's default law: by rule from vehicle and sensors, or as given here."""
+
+    bandwidth_rad_s: SixPositive | None = Field(
+        default=None,
+        description="natural frequency of the feedback near the reference, one per axis, rad/s;"
+        " none: the largest that keeps the margins below (`uvms tune` prints it)",
+    )
+    damping_ratio: SixPositive | None = Field(
+        default=None,
+        description="damping ratio that the gains are laid out for, one per axis, no unit; none: by"
+        " rule with the bandwidth, else 1",
+    )
+    authority_share: float = Field(
+        default=0.8,
+        gt=0.0,
+        le=1.0,
+        description="share of an axis's thrust that the feedback may ask for; the rest is for what"
+        " is fed forward",
+    )
+    delay_margin_periods: float = Field(
+        default=2.0,
+        ge=0.0,
+        le=20.0,
+        description="further delay that the loop must bear, in control periods",
+    )
+    lag_compensation: float = Field(
+        default=1.0,
+        ge=0.0,
+        le=1.0,
+        description="share of the thrusters' lag that the allocator makes up for, as"
+        " allocation.lag_compensation says; the gains are laid out for it",
+    )
+    noise_share: float = Field(
+        default=0.05,
+        gt=0.0,
+        le=1.0,
+        description="share of an axis's thrust that may go into following sensor noise, rms",
+    )
+
+
 class VehicleControlConfig(Config):
-    """S-surface law of the vehicle: one value per axis (surge, sway, heave, roll, pitch, yaw)."""
+    """S-surface of the law `paper`: one value per axis (surge, sway, heave, roll, pitch, yaw)."""
 
     k_error: SixPositive = Field(
         default=(2.0, 2.0, 2.0, 2.0, 2.0, 2.0),

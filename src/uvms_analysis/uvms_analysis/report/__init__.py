@@ -13,6 +13,7 @@ from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import force_figures, motion_figures, style
 from uvms_analysis.report.page import Picture, write_page
 from uvms_analysis.report.scene import draw_scene, scene
+from uvms_analysis.report.stability_figure import stability
 from uvms_analysis.summary import summarise
 
 __all__ = ["FIGURES", "draw_scene", "report"]
@@ -34,6 +35,12 @@ FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
         "Self-disturbance: restoring and coupling wrench on the vehicle, body frame. "
         "Grey: as observed.",
         force_figures.self_disturbance,
+    ),
+    "stability": (
+        "Stability of the vehicle's loop by the controller's own account: Lyapunov function of "
+        "eq. (27), its rate, and both sides of the condition below eq. (29), which is sufficient "
+        "and not necessary.",
+        stability,
     ),
     "thrusters": ("Thrust as allocated; dotted: limits.", force_figures.thrusters),
     "navigation": (

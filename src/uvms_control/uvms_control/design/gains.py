@@ -1,0 +1,102 @@
+"""Gains of the vehicle's law by rule, from the vehicle file and the control period alone.
+
+Each axis gets the largest bandwidth whose loop keeps its margins (`largest_bandwidth`) with the
+arm in any of the postures of the vehicle file: the posture that allows least decides. The gains are
+accelerations, and the law multiplies them by M(q): they mean the same whatever the arm does.
+"""
+
+from dataclasses import dataclass
+from math import sqrt
+
+import numpy as np
+
+from uvms_control.controlled_axes import ControlledAxes
+from uvms_control.design.axis import Axis, AxisGains
+from uvms_control.design.bandwidth import AxisDesign, Limits, largest_bandwidth
+from uvms_control.design.vehicle_axes import Timing, vehicle_axes
+from uvms_control.vehicle_config import GainConfig
+from uvms_core.signals import Array
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.plausible.stability import postures
+
+ATTITUDE = slice(3, 5)
+"""Roll and pitch, along which the arm's weight acts."""
+ENGAGES_IN = 2.0
+"""The feedback comes up within so many times 1 / bandwidth."""
+
+
+@dataclass(frozen=True)
+class VehicleGains:
+    """Feedback of the six axes; 0 where an axis is left to the hull.
+
+    Attributes:
+        stiffness: (6,) P, acceleration per error, 1/s^2.
+        damping: (6,) D, acceleration per rate of the error, 1/s.
+        observer: (6,) K, bandwidth of the external wrench's estimate that goes with them, rad/s.
+        authority_share: of an axis's thrust that the feedback may ask for.
+    """
+
+    stiffness: Array
+    damping: Array
+    observer: Array
+    authority_share: float
+
+    def amplitude(self, authority: Array, mass: Array) -> Array:
+        """A (6,): greatest acceleration of the feedback, m/s^2 and rad/s^2."""
+        return self.authority_share * authority / np.diag(mass)
+
+    def engaged_share(self, engaged_s: float) -> Array:
+        """Share (6,) of the gains this long after the law was engaged, up to 1 and beyond."""
+        return engaged_s * np.sqrt(self.stiffness) / ENGAGES_IN
+
+
+def vehicle_gains(vehicle: Vehicle, period: float, config: GainConfig) -> VehicleGains:
+    """The gains for a control period in s."""
+    designs = axis_designs(vehicle, period, config)
+    gains = [AxisGains(0.0, 0.0) if each is None else each.gains for each in designs]
+    return VehicleGains(
+        np.array([each.stiffness for each in gains]),
+        np.array([each.damping for each in gains]),
+        np.array([each.observer for each in gains]),
+        config.authority_share,
+    )
+
+
+def thrust_delay(axes: ControlledAxes, period: float, config: GainConfig) -> float:
+    """How long after a tick the thrust of its command comes on average, s, in roll and pitch.
+
+    What the allocator leaves of the lag, and half a period, as the command is held; lag that it
+    makes up for is made up for at the end of the period, which is another half.
+    """
+    share, lag = config.lag_compensation, float(np.max(axes.lag[ATTITUDE]))
+    return (1.0 - share) * lag + 0.5 * (1.0 + share) * period
+
+
+def axis_designs(
+    vehicle: Vehicle, period: float, config: GainConfig
+) -> tuple[AxisDesign | None, ...]:
+    """The design of each axis, in the posture that allows least; None: left to the hull."""
+    limits = Limits(delay_periods=config.delay_margin_periods, noise_share=config.noise_share)
+    timing = Timing(period, lag_compensated=config.lag_compensation)
+    by_posture = [vehicle_axes(vehicle, q, timing) for _, q in postures(vehicle)]
+    return tuple(
+        _least([_design(each, k, limits, config) for each in axes])
+        for k, axes in enumerate(zip(*by_posture, strict=True))
+    )
+
+
+def _least(designs: list[AxisDesign | None]) -> AxisDesign | None:
+    found = [each for each in designs if each is not None]
+    return min(found, key=lambda each: each.gains.stiffness) if found else None
+
+
+def _design(axis: Axis | None, k: int, limits: Limits, config: GainConfig) -> AxisDesign | None:
+    if axis is None:
+        return None
+    if config.bandwidth_rad_s is None:
+        return largest_bandwidth(axis, limits)
+    bandwidth = config.bandwidth_rad_s[k]
+    ratio = 1.0 if config.damping_ratio is None else config.damping_ratio[k]
+    damping = 2.0 * ratio * sqrt(max(bandwidth**2 + axis.hull_stiffness, 0.0))
+    gains = AxisGains(bandwidth**2, damping, limits.observer * bandwidth)
+    return AxisDesign(axis, bandwidth, ratio, gains, "asked for")
