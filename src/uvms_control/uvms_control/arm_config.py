@@ -25,8 +25,8 @@ class ArmControlConfig(Config):
         default=0.5,
         ge=0.0,
         le=1.0,
-        description="bound on the load that the joint observer finds beyond the model, as a share of"
-        " the joint's effort limit; 0: no load is looked for",
+        description="bound on the load that the joint observer finds beyond the model, as a share"
+        " of the joint's effort limit; 0: no load is looked for",
     )
     friction_compensation: float = Field(
         default=1.0,
@@ -50,8 +50,8 @@ class CompensationConfig(Config):
         default=0.001,
         gt=0.0,
         le=1.0,
-        description="moment that the noise of the estimate may cost through the arm, rms, as a share"
-        " of the smallest moment that the thrusters have about an axis",
+        description="moment that the noise of the estimate may cost through the arm, rms, as a"
+        " share of the smallest moment that the thrusters have about an axis",
     )
     damping: float = Field(
         default=0.05, gt=0.0, description="damping of the least-squares inverse, m/rad"

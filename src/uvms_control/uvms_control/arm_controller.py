@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uvms_control.arm_gains import ArmGains
+from uvms_control.errors import ControlSetupError
 from uvms_control.joint_observer import JointDrive
 from uvms_core.signals import Array
 from uvms_dynamics import Model, inverse_dynamics
@@ -28,17 +29,20 @@ class ArmController:
     the law steers to, less the load that the joint observer has found.
 
     Args:
-        gains: stiffness and damping of the feedback.
         effort_limit: (n,) N m, the drives' greatest torques.
         amplitude: largest acceleration of the feedback, rad/s^2.
         friction_share: share of the modelled friction that is compensated.
     """
 
-    def __init__(
-        self, gains: ArmGains, effort_limit: Array, amplitude: float, friction_share: float
-    ) -> None:
-        self.gains, self.effort_limit = gains, effort_limit
+    def __init__(self, effort_limit: Array, amplitude: float, friction_share: float) -> None:
+        self.effort_limit = np.array(effort_limit, dtype=np.float64)
+        if not (self.effort_limit > 0.0).all():
+            raise ControlSetupError(
+                f"arm effort limits: {self.effort_limit} N m, expected positive numbers"
+            )
         self._amplitude, self._friction_share = amplitude, friction_share
+        self.gains: ArmGains
+        """Stiffness and damping of the feedback; set before the first step."""
 
     def step(
         self,

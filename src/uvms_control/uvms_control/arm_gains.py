@@ -7,7 +7,8 @@ import numpy as np
 from uvms_control.arm_config import ArmControlConfig
 from uvms_control.vehicle_data import effort_limits
 from uvms_core.signals import Array
-from uvms_core.vehicle import Vehicle, joint_limits
+from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.plausible.stability import postures
 from uvms_dynamics import build_model, mass_matrix
 from uvms_dynamics.joint_prediction import encoder_variances
 
@@ -104,20 +105,10 @@ def sampled_gains(bandwidth: float, damping_ratio: float, dt: float) -> tuple[fl
 
 
 def largest_inertia(vehicle: Vehicle) -> Array:
-    """Diagonal of the joint-space inertia (n,), the largest of some postures, kg m^2.
-
-    Those of the vehicle file, and the arm with every joint at the middle of its range and at
-    either limit.
-    """
+    """Diagonal of the joint-space inertia (n,), the largest of the file's postures, kg m^2."""
     model = build_model(vehicle)
-    lower, upper = joint_limits(vehicle)
-    named = [np.radians(angles) for angles in vehicle.arm.postures_deg.values()]
-    postures = [np.radians(vehicle.arm.stowed_deg), 0.5 * (lower + upper), lower, upper, *named]
-    return np.max([_diagonal(mass_matrix(model, np.array(q, float))) for q in postures], axis=0)
-
-
-def _diagonal(mass: Array) -> Array:
-    return np.diagonal(floating_inertia(mass))
+    found = [floating_inertia(mass_matrix(model, q)) for _, q in postures(vehicle)]
+    return np.max(np.diagonal(found, axis1=1, axis2=2), axis=0)
 
 
 def floating_inertia(mass: Array) -> Array:

@@ -16,15 +16,14 @@ from uvms_core.signals import (
     JointStates,
     Odometry,
     Payload,
-    to_seconds,
 )
 from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_dynamics import Model, inverse_dynamics
 from uvms_dynamics.joint_prediction import encoder_variances, joint_age_limit, loop_delay
 from uvms_dynamics.payload import with_payload
 
-NOMINAL_PERIOD_S = 0.05
-"""Control period that gains are made for until two ticks have shown the real one."""
+PERIOD_S = 0.05
+"""Control period that gains are made for until `prepare` or two ticks tell the real one."""
 
 
 class ArmLaw:
@@ -34,54 +33,40 @@ class ArmLaw:
         """`model`: kernel tables of `vehicle`, as `uvms_dynamics.build_model` makes them."""
         self._vehicle, self._config, self._nominal = vehicle, config, model
         self._n = vehicle.n_joints
-        self._effort_limit = effort_limits(vehicle)
+        effort, load = effort_limits(vehicle), config.arm.load_limit
+        self.joints = ArmController(effort, config.arm.amplitude, config.arm.friction_compensation)
+        self.observer = JointObserver(model, effort, load * effort, encoder_variances(vehicle))
+        self.compensation = EndEffectorCompensation(
+            model, config.compensation, *joint_limits(vehicle), least_moment(vehicle)
+        )
+        self.prepare(PERIOD_S)
+        self._is_prepared = False
         self.reset()
+
+    def prepare(self, period: float) -> None:
+        """Work out the gains for a control period in s; what has been learnt stays."""
+        self._is_prepared = True
+        self._age_limit = joint_age_limit(self._vehicle, period)
+        gains = arm_gains(self._vehicle, period, self._config.arm)
+        self.joints.gains = self.observer.gains = gains
+        self.compensation.fastest = 0.5 * float(gains.bandwidth.min())
+        self.compensation.hull = 1.0 / (3.0 * loop_delay(self._vehicle, period))
 
     def reset(self) -> None:
         """Return to the state before the first step."""
-        self._period = 0.0
-        self._model, self._payload = self._nominal, None
-        self._use_period(NOMINAL_PERIOD_S)
-
-    def _use_period(self, period: float) -> None:
-        """Make gains for a control period, s; what has been learnt stays."""
-        if abs(period - self._period) < 1e-6:
-            return
-        first = self._period == 0.0
-        self._period = period
-        vehicle, config = self._vehicle, self._config.arm
-        gains = arm_gains(vehicle, period, config)
-        self.joints = ArmController(
-            gains, self._effort_limit, config.amplitude, config.friction_compensation
-        )
-        if not first:
-            return
-        self.observer = JointObserver(
-            self._nominal,
-            gains,
-            self._effort_limit,
-            config.load_limit * self._effort_limit,
-            encoder_variances(vehicle),
-        )
-        self.compensation = EndEffectorCompensation(
-            self._nominal,
-            self._config.compensation,
-            *joint_limits(vehicle),
-            moment=least_moment(vehicle),
-            fastest=0.5 * float(gains.bandwidth.min()),
-            hull=1.0 / (3.0 * loop_delay(vehicle, period)),
-        )
+        self._told: Payload | None = None
+        self._payload: Payload | None = None  # that is in the model
+        self._model = self._nominal
+        self.observer.reset()
+        self.compensation.reset()
 
     def check(self, joints: JointStates, tick: int) -> None:
         """SignalError where the joint state is later than the tick, ns, or too old for it."""
-        checks.age("joint_states", joints.stamp, tick, joint_age_limit(self._vehicle, self._period))
+        checks.age("joint_states", joints.stamp, tick, self._age_limit)
 
     def inform(self, budget: DisturbanceBudget) -> None:
         """What the observer knows of the payload; called before `step`."""
         self._told = budget.payload
-
-    _told: Payload | None = None
-    _payload: Payload | None = None
 
     def observe(self, joints: JointStates, tick: int) -> tuple[Array, Array]:
         """Angles and rates (n,) at the tick, ns, by encoders, torques and model."""
@@ -108,8 +93,8 @@ class ArmLaw:
                 not controlled.
             dt: time since the last step, s; 0 at the first.
         """
-        if dt > 0.0:
-            self._use_period(dt)
+        if dt > 0.0 and not self._is_prepared:
+            self.prepare(dt)
         motion = odometry.quaternion, odometry.nu, nu_dot
         self._take_payload(motion)
         correction = self._correction(odometry, desired, mass, dt)

@@ -56,25 +56,22 @@ class EndEffectorCompensation:
         config: bounds, and the share of the moment that noise may cost.
         lower, upper: (n,) joint limits, rad.
         moment: smallest moment that the thrusters have about an axis, N m.
-        fastest: greatest bandwidth, rad/s: what the joints' loops can follow.
-        hull: the same where the arm's reaction moves the hull as much as the tool, rad/s.
     """
 
+    fastest: float
+    """Greatest bandwidth, rad/s: what the joints' loops can follow."""
+    hull: float
+    """The same where the arm's reaction moves the hull as much as the tool: what its loop holds."""
+
     def __init__(
-        self,
-        model: Model,
-        config: CompensationConfig,
-        lower: Array,
-        upper: Array,
-        moment: float,
-        fastest: float,
-        hull: float,
+        self, model: Model, config: CompensationConfig, lower: Array, upper: Array, moment: float
     ) -> None:
         self._model, self._config = model, config
         middle = 0.5 * (lower + upper)
         self._lower = np.minimum(lower + config.joint_margin, middle)
         self._upper = np.maximum(upper - config.joint_margin, middle)
-        self._price, self._fastest, self._hull = (config.noise_share * moment) ** 2, fastest, hull
+        self._price = (config.noise_share * moment) ** 2
+        self.fastest = self.hull = np.inf
         self.reset()
 
     def reset(self) -> None:
@@ -137,15 +134,10 @@ class EndEffectorCompensation:
         if self._config.bandwidth is not None:
             self.bandwidth = np.full(free.size, self._config.bandwidth)
             return
-        import os
-
-        mode = os.environ.get("MODE", "j")
-        if mode == "f":
-            worth = worth * free
-        ratio = np.sqrt(worth / price) if mode != "1" else np.ones(4)
+        ratio = np.sqrt(worth / price)
         cost = float(price**2 * self._steps @ ratio**3) / (THIRD_DIFFERENCE * 4.0 * dt)
         scale = (self._price / max(cost, 1e-30)) ** (1.0 / 3.0)
-        most = free * self._fastest + (1.0 - free) * self._hull
+        most = free * self.fastest + (1.0 - free) * self.hull
         self.bandwidth = np.minimum(scale * ratio, most)
 
     def _bounds(self, q: Array) -> tuple[Array, Array]:

@@ -62,6 +62,7 @@ class Controller:
         self._gains = vehicle_gains(self._vehicle, period, self._config.gains)
         self._monitor = StabilityMonitor(self._gains.stiffness, self._gains.damping)
         self._lead = to_nanoseconds(thrust_delay(self._axes, period, self._config.gains))
+        self.arm.prepare(period)
 
     def reset(self) -> None:
         """Return to the state before the first step."""

@@ -49,35 +49,30 @@ class JointObserver:
 
     Args:
         model: kernel tables: friction and end stops.
-        gains: drift of the load, inertia.
         effort_limit: (n,) N m.
         load_limit: (n,) N m, bound on the load.
         variances: (2,) of the encoders' angle and rate.
     """
 
     def __init__(
-        self,
-        model: Array,
-        gains: ArmGains,
-        effort_limit: Array,
-        load_limit: Array,
-        variances: Array,
+        self, model: Array, effort_limit: Array, load_limit: Array, variances: Array
     ) -> None:
-        self._model, self._load_limit = model, load_limit
-        self._surprise = effort_limit / gains.inertia
-        self._drift = gains.drift
+        self._model, self._effort_limit, self._load_limit = model, effort_limit, load_limit
         self._variances = np.maximum(variances, VARIANCE_FLOOR)
+        self.gains: ArmGains
+        """Drift of the load, and inertia; set before the first step."""
         self.reset()
 
     def reset(self) -> None:
         """Forget everything."""
-        n = self._drift.size
+        n = self._effort_limit.size
         self._stamp: int | None = None
         self._x = np.zeros((3, n))  # at the stamp of the newest sample
         self._P = np.zeros((n, 3, 3))
         self._dt, self._walk = 0.0, np.zeros((3, 3))  # drift within that
         self._drives: deque[tuple[int, JointDrive]] = deque()
         self.now = self._x
+        """Angles, rates and loads (3, n) at the tick of the last `step`."""
 
     @property
     def load(self) -> Array:
@@ -106,7 +101,7 @@ class JointObserver:
     def _start(self, joints: JointStates) -> None:
         self._stamp = joints.stamp
         self._x[0], self._x[1], self._x[2] = joints.position, joints.velocity, 0.0
-        for i, drift in enumerate(self._drift):
+        for i, drift in enumerate(self.gains.drift):
             self._P[i] = np.diag((*self._variances, drift**2))
 
     def _to(self, stamp: int, measured: Array) -> None:
@@ -115,7 +110,7 @@ class JointObserver:
         for dt, drive in self._pieces(self._stamp or 0, stamp):
             if dt != self._dt:
                 self._dt, self._walk = dt, walk(3, dt)
-            _advance(self._model, self._x, self._P, dt, tuple(drive), self._drift, self._walk)
+            _advance(self._model, self._x, self._P, dt, tuple(drive), self.gains.drift, self._walk)
         _take_in(
             self._model,
             self._x,
@@ -123,7 +118,7 @@ class JointObserver:
             dt,
             measured,
             self._variances,
-            self._surprise,
+            self._effort_limit / self.gains.inertia,
             drive.inertia,
             self._load_limit,
         )

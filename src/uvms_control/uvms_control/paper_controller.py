@@ -6,7 +6,7 @@ from uvms_control.reference import ReferenceSample
 from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
-from uvms_core.signals import Array, JointStates, Odometry, Reference
+from uvms_core.signals import Array, Odometry, Reference
 from uvms_core.vehicle import Vehicle
 
 
@@ -24,7 +24,8 @@ class PaperController(Controller):
         self._monitor = StabilityMonitor(self.vehicle.law.stiffness, self.vehicle.law.damping)
 
     def prepare(self, period: float) -> None:
-        """Nothing: the gains are those of the configuration."""
+        """Gains of the arm for a control period in s; the vehicle's are configured."""
+        self.arm.prepare(period)
 
     def reset(self) -> None:
         """Return to the state before the first step."""
@@ -35,7 +36,7 @@ class PaperController(Controller):
     def _vehicle_wrench(
         self,
         odometry: Odometry,
-        joints: JointStates,
+        q: Array,
         mass: Array,
         known: Array,
         desired: ReferenceSample,
