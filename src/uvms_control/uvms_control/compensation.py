@@ -8,14 +8,20 @@ damped) a demand that steps by s each period T,
     c'' = w^2 (demand - c) - 2 w (c' - g demand'),      E[c''^2] = w^3 s^2 / (4 T),
 
 has errors that fall with 1 / sqrt(w), while accelerations grow with w^(3/2). So the noise decides:
-it may cost `noise_share` of the moment that the thrusters have, and w follows from
+it may cost `noise_share` of the moment that the thrusters have,
 
-    w^3 <|M_bq s|^2> / (4 T) = (noise_share * moment)^2,
+    sum over joints of  p^2 w^3 s^2 / (4 T)  =  (noise_share * moment)^2,
 
-where M_bq are the moment's rows of the mass matrix: what accelerations of the joints push the
-vehicle with. s is found from third differences of the demand, which steady motion, swell as well,
-does not show, but every step does. A better estimate makes the arm follow faster, without noise as
-fast as its joints can.
+where p is the moment on the hull that the joint's acceleration makes, a column of the mass matrix.
+Of all bandwidths that cost this, those with w ~ sqrt(l / p) leave the least error of the tool, l
+being the joint's lever, the length of its column of J. s is found from third differences of the
+demand, which steady motion, swell as well, does not show, but every step does. A better estimate
+makes the arm follow faster, without noise as fast as its joints can.
+
+Where the arm's reaction moves the free hull as much as the joint moves the tool (a dynamic
+singularity: Papadopoulos and Dubowsky 1993), only the hull's own loop makes the motion count, and
+the joint must not be faster than that: w is at most (1 - r) of what the joints' loops can follow
+and r of what the hull's loop can, r being the share that the free hull takes back.
 
 What the vehicle does steadily (swell) is followed without lag, by the rate of the demand, as far as
 the estimated velocity is worth it: g = 1 - (its variance by its own covariance) / (its mean square)
@@ -38,6 +44,8 @@ MEMORY_S = 20.0
 """Over which noise and motion are averaged: several periods of swell."""
 # Of a random walk with steps s the third differences are s_k - 2 s_(k-1) + s_(k-2).
 THIRD_DIFFERENCE = 6.0
+OUTLIER = 4.0
+SMALLEST_PUSH = 1e-9  # N m s^2; keeps ratios finite
 
 
 class JointCorrection(NamedTuple):
@@ -77,11 +85,11 @@ class EndEffectorCompensation:
     def reset(self) -> None:
         """Reset the correction to zero."""
         n = self._lower.size
-        self._state = np.zeros((2, n))
+        self._state = np.zeros((2, n))  # angle and rate of the correction
         self._demands = np.zeros((3, n))  # the last three, the newest first
         self._seen = 0
-        self._steps = np.zeros(n)  # mean square of third differences
-        self._powers = np.zeros(2)  # of the demand's rate, and of its noise
+        self._steps = np.zeros(n)  # mean square of the demand's third differences
+        self._powers = np.zeros(2)  # mean squares of the demand's rate, and of its noise
         self.bandwidth = np.zeros(n)
         self.rate_gain = np.zeros(n)
 
@@ -96,49 +104,21 @@ class EndEffectorCompensation:
         if dt <= 0.0:
             return JointCorrection(*self._state, np.zeros(self._lower.size))
         low, high = self._bounds(desired.q)
-        demand = _demand(
+        own, config = self._config.bandwidth, self._config
+        followed = _compensate(
             self._model,
             (odometry.position, odometry.quaternion, odometry.nu, odometry.twist_covariance),
             (desired.quaternion, desired.nu, desired.q, desired.end_effector),
             mass,
-            low,
-            high,
-            self._config.damping,
+            (low, high),
+            (config.damping, config.max_rate, self._price, self.fastest, self.hull, own or 0.0),
+            (self._state, self._demands, self._steps, self._powers),
+            (self.bandwidth, self.rate_gain),
+            self._seen,
+            dt,
         )
-        wanted, rate, noise, recoil, worth, price = demand
-        self._note(wanted, rate, noise, dt)
-        self._decide(recoil, worth, price, dt)
-        followed = _follow(
-            self._state, wanted, self.rate_gain * rate, self.bandwidth, dt, low, high,
-            self._config.max_rate,
-        )  # fmt: skip
-        self._state = followed[:2]
-        return JointCorrection(*followed)
-
-    def _note(self, wanted: Array, rate: Array, noise: float, dt: float) -> None:
-        """Average the demand's steps and its rate."""
-        first, second, third = self._demands
         self._seen += 1
-        if self._seen > 3:
-            step = wanted - 3.0 * first + 3.0 * second - third
-            share = max(dt / MEMORY_S, 1.0 / (self._seen - 3))
-            self._steps += share * (step * step - self._steps)
-            self._powers += share * (np.array((rate @ rate, noise)) - self._powers)
-        self._demands = np.array((wanted, first, second))
-
-    def _decide(self, recoil: Array, worth: Array, price: Array, dt: float) -> None:
-        """Bandwidth and gain of the rate for every joint."""
-        free = 1.0 - np.clip(recoil, 0.0, 1.0)
-        motion, noise = self._powers.tolist()
-        self.rate_gain = free * (max(0.0, 1.0 - noise / motion) if motion > 0.0 else 0.0)
-        if self._config.bandwidth is not None:
-            self.bandwidth = np.full(free.size, self._config.bandwidth)
-            return
-        ratio = np.sqrt(worth / price)
-        cost = float(price**2 * self._steps @ ratio**3) / (THIRD_DIFFERENCE * 4.0 * dt)
-        scale = (self._price / max(cost, 1e-30)) ** (1.0 / 3.0)
-        most = free * self.fastest + (1.0 - free) * self.hull
-        self.bandwidth = np.minimum(scale * ratio, most)
+        return JointCorrection(*followed)
 
     def _bounds(self, q: Array) -> tuple[Array, Array]:
         """The largest angle and the joint limits, but never away from a reference there."""
@@ -148,6 +128,38 @@ class EndEffectorCompensation:
 
 
 @exact_kernel
+def _compensate(
+    model: Array,
+    at: tuple,
+    to: tuple,
+    mass: Array,
+    bounds: tuple,
+    numbers: tuple,
+    memory: tuple,
+    chosen: tuple,
+    seen: int,
+    dt: float,
+) -> Array:
+    """The next correction (3, n); `memory` and `chosen`, bandwidth and rate gain, are renewed."""
+    damping, max_rate, price, fastest, hull, own = numbers
+    state, demands, steps, powers = memory
+    bandwidth, rate_gain = chosen
+    low, high = bounds
+    wanted, rate, noise, recoil, worth, push = _demand(model, at, to, mass, low, high, damping)
+    _note(wanted, rate, noise, price, fastest, push, seen, dt, demands, steps, powers)
+    scale = _scale(steps, worth, push, price, dt)
+    share = max(0.0, 1.0 - powers[1] / powers[0]) if powers[0] > 0.0 else 0.0
+    for i in range(wanted.shape[0]):
+        free = 1.0 - min(max(recoil[i], 0.0), 1.0)
+        rate_gain[i] = free * share
+        most = free * fastest + (1.0 - free) * hull
+        bandwidth[i] = own if own > 0.0 else min(scale * np.sqrt(worth[i] / push[i]), most)
+    out = _follow(state, wanted, rate_gain * rate, bandwidth, dt, low, high, max_rate)
+    state[:] = out[:2]
+    return out
+
+
+@exact_inner
 def _demand(
     model: Array, at: tuple, to: tuple, mass: Array, low: Array, high: Array, damping: float
 ) -> tuple:
@@ -173,14 +185,59 @@ def _demand(
     rate = inverse @ (planned @ desired_nu - of_vehicle @ nu)
     spread = inverse @ of_vehicle
     noise = 0.0
-    recoil, worth, price = np.empty(n), np.empty(n), np.empty(n)
+    recoil, worth, push = np.empty(n), np.empty(n), np.empty(n)
     pushed = np.linalg.solve(mass[:6, :6].copy(), mass[:6, 6:].copy())
     for i in range(n):
         noise += spread[i] @ (covariance @ spread[i])
         recoil[i] = spread[i] @ pushed[:, i].copy()
         worth[i] = np.sqrt((jacobian[:, 6 + i] ** 2).sum())
-        price[i] = np.sqrt((mass[3:6, 6 + i] ** 2).sum())
-    return correction, rate, noise, recoil, worth, price
+        push[i] = np.sqrt((mass[3:6, 6 + i] ** 2).sum()) + SMALLEST_PUSH
+    return correction, rate, noise, recoil, worth, push
+
+
+@exact_inner
+def _note(
+    wanted: Array,
+    rate: Array,
+    noise: float,
+    price: float,
+    fastest: float,
+    push: Array,
+    seen: int,
+    dt: float,
+    demands: Array,
+    steps: Array,
+    powers: Array,
+) -> None:
+    """Average the steps and the rate of the demand.
+
+    A single jump, as of a fix of the position, is no noise: no step counts more than `OUTLIER`
+    standard deviations, of those that are or of those that would cost something.
+    """
+    if seen >= 3:
+        share = max(dt / MEMORY_S, 1.0 / (seen - 2))
+        for i in range(wanted.shape[0]):
+            step = wanted[i] - 3.0 * demands[0, i] + 3.0 * demands[1, i] - demands[2, i]
+            dear = THIRD_DIFFERENCE * 4.0 * dt * price / (push[i] ** 2 * fastest**3)
+            most = OUTLIER**2 * max(steps[i], dear)
+            steps[i] += share * (min(step * step, most) - steps[i])
+        powers[0] += share * (rate @ rate - powers[0])
+        powers[1] += share * (noise - powers[1])
+    demands[2], demands[1], demands[0] = demands[1].copy(), demands[0].copy(), wanted
+
+
+@exact_inner
+def _scale(steps: Array, worth: Array, push: Array, price: float, dt: float) -> float:
+    """Lambda of the bandwidths lambda sqrt(worth / push) at which noise costs the price.
+
+    A joint's noise costs push^2 w^3 and leaves an error of worth^2 / w in the tool: the least error
+    for the price has w^4 ~ worth^2 / push^2.
+    """
+    cost = 0.0
+    for i in range(steps.shape[0]):
+        cost += push[i] ** 2 * steps[i] * (worth[i] / push[i]) ** 1.5
+    cost /= THIRD_DIFFERENCE * 4.0 * dt
+    return (price / max(cost, 1e-30)) ** (1.0 / 3.0)
 
 
 @exact_inner
@@ -190,7 +247,7 @@ def _damped_inverse(jacobian: Array, damping: float) -> Array:
     return np.linalg.solve(damped, jacobian).T.copy()
 
 
-@exact_kernel
+@exact_inner
 def _follow(
     state: Array,
     wanted: Array,
