@@ -1,111 +1,156 @@
-"""The arm's law: S-surface feedback per joint with the arm's model as Delta-u, eq. (19)."""
+"""The arm's torque law: S-surface feedback per joint with the arm's model as Delta-u, eq. (19)."""
+
+from typing import NamedTuple
 
 import numpy as np
 
-from uvms_control.arm_config import ArmControlConfig
+from uvms_control.arm_gains import ArmGains
 from uvms_control.errors import ControlSetupError
-from uvms_control.s_surface import SSurface
+from uvms_control.joint_observer import JointDrive
 from uvms_core.signals import Array
+from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics.kernels import layout
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 
 
-def sampled_gains(bandwidth: float, damping_ratio: float, dt: float) -> tuple[float, float]:
-    """Gains (k in 1/s^2, d in 1/s) that give a sampled double integrator the wanted poles.
+class JointAim(NamedTuple):
+    """Where the joints are to be, (n,) each."""
 
-    The torque is held over dt, so that e_ddot = -k e - d e_dot with e sampled has the poles of
-        z^2 + (k dt^2/2 + d dt - 2) z + (1 + k dt^2/2 - d dt).
-    They are put at z = exp(s dt), s the roots of s^2 + 2 zeta w s + w^2: the loop is stable for
-    every bandwidth and period, and k -> w^2, d -> 2 zeta w as dt -> 0 (Franklin, Powell and
-    Workman, Digital Control of Dynamic Systems, 3rd ed., section 8.1).
-    """
-    if dt <= 0.0:
-        return bandwidth**2, 2.0 * damping_ratio * bandwidth
-    spread = bandwidth * np.sqrt(complex(damping_ratio**2 - 1.0))
-    first, second = (
-        np.exp((-damping_ratio * bandwidth + sign * spread) * dt) for sign in (1.0, -1.0)
-    )
-    a1, a0 = -(first + second).real, (first * second).real
-    return (1.0 + a1 + a0) / dt**2, (3.0 + a1 - a0) / (2.0 * dt)
-
-
-def floating_inertia(mass: Array) -> Array:
-    """Joint-space inertia (n, n) of an arm whose vehicle floats: S = M_qq - M_qb M_bb^-1 M_bq.
-
-    `mass` (6 + n, 6 + n) of the whole system. A joint torque S a with no other change of force
-    accelerates the joints by exactly a while the vehicle reacts freely; with M_qq alone the gain of
-    a joint that can roll the vehicle would be more than twice the intended one.
-    """
-    coupling = mass[:6, 6:]
-    return mass[6:, 6:] - coupling.T @ np.linalg.solve(mass[:6, :6], coupling)
+    angle: Array  # rad
+    rate: Array  # rad/s
+    acceleration: Array  # rad/s^2
 
 
 class ArmController:
     """tau = K (u + Delta-u), K = A S(q): gains mean bandwidth, whatever the joint carries.
 
-    S(q) is the joint-space inertia of the arm on the floating vehicle, `floating_inertia`.
+    S(q) is the joint-space inertia of the arm on the floating vehicle, `floating_inertia`; Delta-u
+    is the torque that the model needs for the reference's acceleration, friction at the rate that
+    the law steers to, less the load that the joint observer has found.
+
+    Args:
+        effort_limit: (n,) N m, the drives' greatest torques.
+        amplitude: largest acceleration of the feedback, rad/s^2.
+        friction_share: share of the modelled friction that is compensated.
     """
 
-    def __init__(self, config: ArmControlConfig, effort_limit: Array):
-        """`effort_limit` (n,): largest joint torques in N m."""
+    def __init__(self, effort_limit: Array, amplitude: float, friction_share: float) -> None:
         self.effort_limit = np.array(effort_limit, dtype=np.float64)
         if not (self.effort_limit > 0.0).all():
             raise ControlSetupError(
                 f"arm effort limits: {self.effort_limit} N m, expected positive numbers"
             )
-        self._config = config
-        self._limit = config.integral_limit * self.effort_limit
-        self._law: SSurface | None = None  # for the period below, which rarely changes
-        self._period = 0.0
-        self.reset()
+        self._amplitude, self._friction_share = amplitude, friction_share
+        self.gains: ArmGains
+        """Stiffness and damping of the feedback; set before the first step."""
 
-    def reset(self) -> None:
-        """Empty the integral."""
-        self.integral = np.zeros_like(self.effort_limit)
+    def step(
+        self,
+        model: Model,
+        motion: tuple[Array, Array, Array],
+        mass: Array,
+        joints: Array,
+        aim: JointAim,
+    ) -> tuple[Array, JointDrive]:
+        """Joint torques (n,) N m within the drives' limits, and what they should bring about.
 
-    def law(self, dt: float) -> SSurface:
-        """The S-surface whose slope near zero has the configured bandwidth at the period dt (s)."""
-        if self._law is None or dt != self._period:
-            self._law, self._period = self._law_for(dt), dt
-        return self._law
+        No torque presses a joint further into an end stop than the model and the load need to
+        hold it there, and an aim beyond a stop is moved to the stop.
 
-    def _law_for(self, dt: float) -> SSurface:
-        k, d = sampled_gains(self._config.bandwidth, self._config.damping_ratio, dt)
-        one, n = self._config.amplitude, self.effort_limit.size
-        # With an error scale of A / (2 k) and k_error = 1 the slope A k_error / (2 scale) is k.
-        return SSurface(
-            k_error=np.ones(n),
-            k_rate=np.ones(n),
-            error_scale=np.full(n, one / (2.0 * k)),
-            rate_scale=np.full(n, one / (2.0 * d)),
-            amplitude=np.full(n, one),
+        Args:
+            model: kernel tables, with the payload where one is known.
+            motion: attitude (4,), nu (6,) and reference nu_dot (6,) of the vehicle.
+            mass: M(q) (6 + n, 6 + n).
+            joints: angles, rates and unknown loads (3, n).
+            aim: where the joints are to be.
+        """
+        effort, acceleration, steered, inertia, inverse = _torque(
+            model,
+            motion,
+            mass,
+            joints,
+            tuple(aim),
+            self.gains.stiffness,
+            self.gains.damping,
+            self._amplitude,
+            self._friction_share,
+            self.effort_limit,
         )
+        return effort, JointDrive(acceleration, joints[2].copy(), steered, inertia, inverse)
 
-    def steered_rate(self, error: Array, q_dot: Array, dt: float) -> Array:
-        """Rate (n,) rad/s that the law steers to near zero error: q_dot_d + (k / d) e.
 
-        Friction is compensated at this rate. At the measured one the compensation would feed back
-        as negative damping and chatter about zero; at the reference rate alone a joint would stick
-        where the feedback torque is smaller than its dry friction.
-        """
-        law = self.law(dt)
-        return q_dot + law.stiffness / law.damping * error
+@exact_kernel
+def _torque(
+    model: Array,
+    motion: tuple,
+    mass: Array,
+    joints: Array,
+    aim: tuple,
+    stiffness: Array,
+    damping: Array,
+    amplitude: float,
+    friction_share: float,
+    effort_limit: Array,
+) -> tuple:
+    n = stiffness.shape[0]
+    q, q_dot, load = joints[0].copy(), joints[1].copy(), joints[2]
+    angle, rate, acceleration = _within_stops(model, aim)
+    inertia = _floating(mass, n)
+    inverse = np.linalg.inv(inertia)
+    quaternion, nu, nu_dot = motion
+    needed = inverse_dynamics(model, quaternion, nu, nu_dot, q, q_dot, acceleration)
+    feedback, steered, left = np.empty(n), np.empty(n), np.empty(n)
+    hold, wanted, effort = np.empty(n), np.empty(n), np.empty(n)
+    for i in range(n):
+        error, slip = angle[i] - q[i], rate[i] - q_dot[i]
+        pull = stiffness[i] * error + damping[i] * slip
+        feedback[i] = amplitude * np.tanh(pull / amplitude)
+        steered[i] = rate[i] + stiffness[i] / damping[i] * error
+        friction = _friction(model, i, steered[i])
+        left[i] = (1.0 - friction_share) * friction
+        hold[i] = needed[6 + i] + friction_share * friction - load[i]
+    for i in range(n):
+        wanted[i] = hold[i]
+        for j in range(n):
+            wanted[i] += inertia[i, j] * feedback[j]
+        torque = wanted[i]
+        if q[i] >= model[i + 1, layout.UPPER]:
+            torque = min(torque, hold[i])
+        elif q[i] <= model[i + 1, layout.LOWER]:
+            torque = max(torque, hold[i])
+        effort[i] = min(max(torque, -effort_limit[i]), effort_limit[i])
+    for i in range(n):
+        acceleration[i] += feedback[i]
+        for j in range(n):
+            acceleration[i] += inverse[i, j] * (effort[j] - wanted[j] - left[j])
+    return effort, acceleration, steered, inertia, inverse
 
-    def effort(
-        self, error: Array, rate: Array, inertia: Array, feed_forward: Array, dt: float
-    ) -> Array:
-        """Joint torques (n,) N m within the limits: K u + feed-forward + integral, eq. (19).
 
-        `error` q_d - q, `rate` of it, `inertia` S(q) (n, n), `feed_forward` (n,) N m: the torque
-        that the model needs for the reference acceleration. With the integral it is K Delta-u.
-        """
-        law = self.law(dt)
-        feedback = inertia @ law.acceleration(error, rate)
-        growth = self._config.integral_rate * law.stiffness * inertia.diagonal() * error * dt
-        wanted = feedback + feed_forward + self.integral
-        self._integrate(growth, wanted)
-        return np.minimum(np.maximum(wanted, -self.effort_limit), self.effort_limit)
+@exact_inner
+def _within_stops(model: Array, aim: tuple) -> tuple:
+    """The aim with every angle at the end stop where it is beyond, and then no motion outwards."""
+    angle, rate, acceleration = aim[0].copy(), aim[1].copy(), aim[2].copy()
+    for i in range(angle.shape[0]):
+        lower, upper = model[i + 1, layout.LOWER], model[i + 1, layout.UPPER]
+        if angle[i] > upper:
+            angle[i] = upper
+            rate[i], acceleration[i] = min(rate[i], 0.0), min(acceleration[i], 0.0)
+        elif angle[i] < lower:
+            angle[i] = lower
+            rate[i], acceleration[i] = max(rate[i], 0.0), max(acceleration[i], 0.0)
+    return angle, rate, acceleration
 
-    def _integrate(self, growth: Array, wanted: Array) -> None:
-        """Grow the integral within its limit, not further into a saturated torque (anti-windup)."""
-        windup = (np.abs(wanted) >= self.effort_limit) & (growth * wanted > 0.0)
-        moved = self.integral + growth * ~windup
-        self.integral = np.minimum(np.maximum(moved, -self._limit), self._limit)
+
+@exact_inner
+def _friction(model: Array, i: int, rate: float) -> float:
+    """Torque that the friction of joint i takes at a rate, N m."""
+    row = model[i + 1]
+    coulomb = row[layout.COULOMB] * np.tanh(rate * row[layout.INVERSE_WIDTH])
+    return row[layout.VISCOUS] * rate + coulomb
+
+
+@exact_inner
+def _floating(mass: Array, n: int) -> Array:
+    """S = M_qq - M_qb M_bb^-1 M_bq (n, n), as `arm_gains.floating_inertia`."""
+    coupling = mass[:6, 6:].copy()
+    return mass[6:, 6:] - coupling.T @ np.linalg.solve(mass[:6, :6].copy(), coupling)

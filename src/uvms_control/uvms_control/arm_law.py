@@ -2,14 +2,28 @@
 
 import numpy as np
 
-from uvms_control.arm_controller import ArmController, floating_inertia
+from uvms_control.arm_controller import ArmController, JointAim
+from uvms_control.arm_gains import arm_gains
 from uvms_control.compensation import EndEffectorCompensation, JointCorrection
 from uvms_control.config import ControlConfig
+from uvms_control.joint_observer import JointObserver
 from uvms_control.reference import ReferenceSample
-from uvms_control.vehicle_data import effort_limits
-from uvms_core.signals import Array, DisturbanceBudget, JointStates, Odometry
+from uvms_control.vehicle_data import effort_limits, least_moment
+from uvms_core import checks
+from uvms_core.signals import (
+    Array,
+    DisturbanceBudget,
+    JointStates,
+    Odometry,
+    Payload,
+)
 from uvms_core.vehicle import Vehicle, joint_limits
-from uvms_dynamics import Model, inverse_dynamics, joint_passive_torque
+from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics.joint_prediction import encoder_variances, joint_age_limit, loop_delay
+from uvms_dynamics.payload import with_payload
+
+PERIOD_S = 0.05
+"""Control period that gains are made for until `prepare` or two ticks tell the real one."""
 
 
 class ArmLaw:
@@ -17,26 +31,51 @@ class ArmLaw:
 
     def __init__(self, vehicle: Vehicle, model: Model, config: ControlConfig):
         """`model`: kernel tables of `vehicle`, as `uvms_dynamics.build_model` makes them."""
-        self._config = config
-        self._model = model
+        self._vehicle, self._config, self._nominal = vehicle, config, model
         self._n = vehicle.n_joints
-        lower, upper = joint_limits(vehicle)
-        self._away_from_stops = 0.5 * (lower + upper)
-        self.joints = ArmController(config.arm, effort_limits(vehicle))
-        self.compensation = EndEffectorCompensation(model, config.compensation, lower, upper)
+        effort, load = effort_limits(vehicle), config.arm.load_limit
+        self.joints = ArmController(effort, config.arm.amplitude, config.arm.friction_compensation)
+        self.observer = JointObserver(model, effort, load * effort, encoder_variances(vehicle))
+        self.compensation = EndEffectorCompensation(
+            model, config.compensation, *joint_limits(vehicle), least_moment(vehicle)
+        )
+        self.prepare(PERIOD_S)
+        self._is_prepared = False
+        self.reset()
+
+    def prepare(self, period: float) -> None:
+        """Work out the gains for a control period in s; what has been learnt stays."""
+        self._is_prepared = True
+        self._age_limit = joint_age_limit(self._vehicle, period)
+        gains = arm_gains(self._vehicle, period, self._config.arm)
+        self.joints.gains = self.observer.gains = gains
+        self.compensation.fastest = 0.5 * float(gains.bandwidth.min())
+        self.compensation.hull = 1.0 / (3.0 * loop_delay(self._vehicle, period))
 
     def reset(self) -> None:
         """Return to the state before the first step."""
-        self.joints.reset()
+        self._told: Payload | None = None
+        self._payload: Payload | None = None  # that is in the model
+        self._model = self._nominal
+        self.observer.reset()
         self.compensation.reset()
+
+    def check(self, joints: JointStates, tick: int) -> None:
+        """SignalError where the joint state is later than the tick, ns, or too old for it."""
+        checks.age("joint_states", joints.stamp, tick, self._age_limit)
 
     def inform(self, budget: DisturbanceBudget) -> None:
         """What the observer knows of the payload; called before `step`."""
+        self._told = budget.payload
+
+    def observe(self, joints: JointStates, tick: int) -> tuple[Array, Array]:
+        """Angles and rates (n,) at the tick, ns, by encoders, torques and model."""
+        now = self.observer.step(joints, tick)
+        return now[0], now[1]
 
     def step(
         self,
         odometry: Odometry,
-        joints: JointStates,
         desired: ReferenceSample,
         mass: Array,
         nu_dot: Array,
@@ -44,48 +83,60 @@ class ArmLaw:
     ) -> Array:
         """Joint torques (n,) in N m within the drives' limits, held until the next step.
 
+        `observe` comes before.
+
         Args:
             odometry: estimated pose and velocity of the vehicle.
-            joints: encoders.
             desired: reference at the stamp of `odometry`.
             mass: M(q) (6 + n, 6 + n) of the whole system.
             nu_dot: reference acceleration (6,) of the vehicle in its body frame; zeros where it is
                 not controlled.
             dt: time since the last step, s; 0 at the first.
         """
-        feed_forward = self._model_torque(odometry, joints, desired, nu_dot)
-        correction = self._correction(odometry, desired, dt)
-        q_dot = desired.q_dot + correction.rate
-        error = desired.q + correction.angle - joints.position
-        steered = self.joints.steered_rate(error, q_dot, dt)
-        friction = joint_passive_torque(self._model, self._away_from_stops, steered)
-        load = feed_forward - self._config.arm.friction_compensation * friction
-        rate = q_dot - joints.velocity
-        return self.joints.effort(error, rate, floating_inertia(mass), load, dt)
+        if dt > 0.0 and not self._is_prepared:
+            self.prepare(dt)
+        motion = odometry.quaternion, odometry.nu, nu_dot
+        self._take_payload(motion)
+        correction = self._correction(odometry, desired, mass, dt)
+        aim = JointAim(
+            desired.q + correction.angle,
+            desired.q_dot + correction.rate,
+            desired.q_ddot + correction.acceleration,
+        )
+        effort, drive = self.joints.step(self._model, motion, mass, self.observer.now, aim)
+        self.observer.command(odometry.stamp, drive)
+        return effort
 
     def _correction(
-        self, odometry: Odometry, desired: ReferenceSample, dt: float
+        self, odometry: Odometry, desired: ReferenceSample, mass: Array, dt: float
     ) -> JointCorrection:
         if self._config.enabled and self._config.compensate_vehicle_motion:
-            return self.compensation.step(odometry, desired, dt)
-        return JointCorrection(np.zeros(self._n), np.zeros(self._n))
+            return self.compensation.step(odometry, desired, mass, dt)
+        return JointCorrection(np.zeros(self._n), np.zeros(self._n), np.zeros(self._n))
 
-    def _model_torque(
-        self, odometry: Odometry, joints: JointStates, desired: ReferenceSample, nu_dot: Array
-    ) -> Array:
-        """K Delta-u of eq. (19): what the model needs for the reference acceleration (n,) N m.
+    def _take_payload(self, motion: tuple[Array, Array, Array]) -> None:
+        """Take a payload into the model once it is confirmed, without a step of the torque."""
+        held = self._told if self._told is not None and self._told.held else None
+        if held is None and self._payload is None:
+            return
+        if held is not None and self._payload is not None and _is_alike(held, self._payload):
+            return
+        before = self._holding_torque(motion)
+        self._payload, self._model = held, self._nominal
+        if held is not None:
+            self._model = with_payload(self._nominal, held.mass, held.weight, held.position)
+        self.observer.shift_load(self._holding_torque(motion) - before)
 
-        Weight, buoyancy, drag and the vehicle's reference acceleration are in it, friction is not.
-        The vehicle's feedback acceleration is left out: what it really causes is uncertain when a
-        disturbance is not fed forward or a thruster saturates.
-        """
-        whole = inverse_dynamics(
-            self._model,
-            odometry.quaternion,
-            odometry.nu,
-            nu_dot,
-            joints.position,
-            joints.velocity,
-            desired.q_ddot,
-        )
-        return whole[6:]
+    def _holding_torque(self, motion: tuple[Array, Array, Array]) -> Array:
+        q, q_dot, _ = self.observer.now
+        torque: Array = inverse_dynamics(self._model, *motion, q, q_dot, np.zeros(self._n))[6:]
+        return torque
+
+
+def _is_alike(one: Payload, other: Payload) -> bool:
+    """Whether two estimates differ by less than their own uncertainty."""
+    return (
+        abs(one.mass - other.mass) <= 0.5 * one.mass_sigma
+        and abs(one.weight - other.weight) <= 0.5 * one.weight_sigma
+        and bool((np.abs(one.position - other.position) <= 0.5 * one.position_sigma).all())
+    )

@@ -68,6 +68,7 @@ class Controller:
         whole = self._gains.stiffness + self._gains.righting
         self._monitor = StabilityMonitor(whole, self._gains.damping)
         self._lead = to_nanoseconds(thrust_delay(self._axes, period, self._config.gains))
+        self.arm.prepare(period)
 
     def reset(self) -> None:
         """Return to the state before the first step."""
@@ -104,18 +105,19 @@ class Controller:
         self._check(odometry, joints, disturbance, reference)
         dt = self._elapsed(odometry.stamp)
         desired = sample_reference(reference, odometry.stamp)
-        mass = mass_matrix(self._model, joints.position)
+        q, _ = self.arm.observe(joints, odometry.stamp)
+        mass = mass_matrix(self._model, q)
         nu_dot, wrench = np.zeros(6), np.zeros(6)
         if self._config.enabled:
             inertia = np.ascontiguousarray(mass[:6, :6])
             acts = np.zeros(6) if disturbance is None else disturbance.wrench
             known = acts if self._config.observer else np.zeros(6)
             tracking, wrench = self._vehicle_wrench(
-                odometry, joints, inertia, known, desired, reference, dt
+                odometry, q, inertia, known, desired, reference, dt
             )
             nu_dot = tracking.acceleration
             self.stability = self._judge(odometry, inertia, acts, tracking, wrench)
-        effort = self.arm.step(odometry, joints, desired, mass, nu_dot, dt)
+        effort = self.arm.step(odometry, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
     def _judge(
@@ -140,7 +142,7 @@ class Controller:
     def _vehicle_wrench(
         self,
         odometry: Odometry,
-        joints: JointStates,
+        q: Array,
         mass: Array,
         known: Array,
         desired: ReferenceSample,
@@ -162,8 +164,8 @@ class Controller:
                 odometry,
                 tracking.error,
                 self._axes.is_controlled,
-                joints.position,
-                joints_ahead(joints.position, desired, ahead),
+                q,
+                joints_ahead(q, desired, ahead),
             )
         wrench = self._law.step(
             self._model, self._axes, self._gains, odometry, mass, tracking, known, dt
@@ -184,7 +186,7 @@ class Controller:
     ) -> None:
         if self._stamp is not None:
             checks.later("odometry.stamp", odometry.stamp, self._stamp, "the last one's")
-        checks.age("joint_states", joints.stamp, odometry.stamp)
+        self.arm.check(joints, odometry.stamp)
         checks.check("odometry", odometry)
         checks.check("joint_states", joints, n=self._joint_names)
         if disturbance is not None:

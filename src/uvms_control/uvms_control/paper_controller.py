@@ -12,7 +12,7 @@ from uvms_control.reference import ReferenceSample
 from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import TrackingError, tracking_error
 from uvms_control.vehicle_controller import VehicleController
-from uvms_core.signals import Array, JointStates, Odometry, Reference
+from uvms_core.signals import Array, Odometry, Reference
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.plausible.stability import postures
 from uvms_core.vehicle.postures import STOWED
@@ -48,6 +48,7 @@ class PaperController(Controller):
         check_slopes("control.vehicle", axes, list(law.stiffness), list(law.damping))
         controlled = self._axes.is_controlled
         self._monitor = StabilityMonitor(law.stiffness * controlled, law.damping * controlled)
+        self.arm.prepare(period)
 
     def reset(self) -> None:
         """Return to the state before the first step."""
@@ -58,7 +59,7 @@ class PaperController(Controller):
     def _vehicle_wrench(
         self,
         odometry: Odometry,
-        joints: JointStates,
+        q: Array,
         mass: Array,
         known: Array,
         desired: ReferenceSample,

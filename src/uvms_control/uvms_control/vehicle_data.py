@@ -4,6 +4,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics import thruster_matrix
 
 
 def effort_limits(vehicle: Vehicle) -> Array:
@@ -26,3 +27,15 @@ def least_thrusts(vehicle: Vehicle) -> Array:
 def thruster_lags(vehicle: Vehicle) -> Array:
     """Time constants of the thrusters' first-order lag (m,) in s."""
     return np.array([part.time_constant_s for part in vehicle.thrusters])
+
+
+def least_moment(vehicle: Vehicle) -> float:
+    """Smallest moment that the thrusters have about an axis, N m; axes without any are left out.
+
+    Each thruster by the lesser of its limits, all at once about one axis. An axis counts as without
+    moment below a thousandth of the greatest; infinite where there is no moment at all.
+    """
+    limits, _ = thruster_limits(vehicle)
+    moments = np.abs(thruster_matrix(vehicle)[3:]) @ np.abs(limits).min(axis=0)
+    there = moments[moments > 1e-3 * moments.max()]
+    return float(there.min()) if there.size else float("inf")
