@@ -17,6 +17,10 @@ from uvms_dynamics.kernels.numba_internals.compilations import reported
 WARM_S = 3.0
 WITHOUT_WAVES = ("swell", "plant.current.waves=[]")
 """Water that moves without waves has kernels of its own, and no scenario of its own."""
+BY_WEIGHTS = ("hover", "allocation=weighted_least_squares")
+"""So has allocation by weights."""
+DEAD_ZONES = "vehicle=bluerov2_alpha5"
+"""Its thrusters have dead zones, which take a kernel for either allocation."""
 
 
 class ProgressLine:
@@ -62,7 +66,12 @@ class ProgressLine:
 def main() -> int:
     """Run every scenario that comes with the project for a moment."""
     with ProgressLine() as line, reported(line.kernel):
-        for name, *settings in (*([name] for name in known_scenarios()), WITHOUT_WAVES):
+        for name, *settings in (
+            *([name] for name in known_scenarios()),
+            WITHOUT_WAVES,
+            (*BY_WEIGHTS, DEAD_ZONES),
+            ("hover", DEAD_ZONES),
+        ):
             scenario = load_scenario(name, settings, duration_s=WARM_S)
             vehicle = scenario.load_vehicle()
             simulate(scenario, vehicle, scenario.goal.build(vehicle, scenario.plant))

@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from uvms_control.allocation import ThrustAllocator, WeightedAllocator
-from uvms_control.allocation.lag import thrust_delay
+from uvms_control.allocation.lag import SLEW_ERROR, thrust_delay
 from uvms_control.config import AllocatorConfig
 from uvms_core.errors import SignalError
 from uvms_core.signals import Wrench, to_nanoseconds
@@ -114,7 +114,7 @@ def test_commands_ahead_of_the_thrust_stay_where_the_observer_knows_their_lag():
     """Steps that saturate: no slew limit acts, and `ThrustLag` has the mean wrench."""
     allocator = ThrustAllocator(VEHICLE, AllocatorConfig(lag_compensation=1.0))
     lag, thrust, rng = ThrustLag(VEHICLE), np.zeros(7), np.random.default_rng(3)
-    saturates = 0
+    saturates, most = 0, 4 * SLEW_ERROR * 245.0 * 0.12 / (1.0 - np.exp(-PERIOD / 0.12))
     for k in range(30):
         tau = min(k, 1) * rng.uniform(-0.6, 0.6, 6) * allocator._gross
         result = allocator.step(at(k, tau))[1]
@@ -122,12 +122,10 @@ def test_commands_ahead_of_the_thrust_stay_where_the_observer_knows_their_lag():
         assert (np.abs(result.thrust) <= allocator.limits).all()
         if k > 0:
             saturates += result.saturated.any()
-            assert np.allclose(result.residual, tau - allocator.matrix @ thrust, atol=0.1)
+            assert np.allclose(result.residual, tau - allocator.matrix @ thrust, atol=most)
         modelled = lag.step(PERIOD, result.achieved)
         if k > 0:
-            assert np.allclose(
-                modelled, allocator.matrix @ mean, atol=0.02 * allocator._gross.max()
-            )
+            assert np.allclose(modelled, allocator.matrix @ mean, atol=most)
     assert saturates > 10
 
 

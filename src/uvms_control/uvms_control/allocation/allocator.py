@@ -125,8 +125,8 @@ class ThrustAllocator:
         self._any_dead = bool(self._dead.any())
         self._held = tuple(self._box * ~self._dead)
         self._given = self.matrix * self.effectiveness
-        slope = self._given if self._lag is None else self._given * self._lag.slope
-        self._solver = self._make_solver(slope)
+        self._slope = self._given if self._lag is None else self._given * self._lag.slope
+        self._solver = self._make_solver(self._slope)
         if self._gap is not None:
             self._gap = self._gap.of(self._solver)
 
@@ -227,7 +227,7 @@ class ThrustAllocator:
         thrust, tau_wanted = self._solver.solve(tau, lower, upper), tau
         if self._config.preserve_direction and not self._exact(thrust, tau):
             thrust = self._scaled(tau, lower, upper, thrust)
-            tau_wanted = self._solver.tables[0] @ thrust
+            tau_wanted = self._slope @ thrust
         if self._gap is not None:
             thrust = self._gap.left_out(tau_wanted, thrust, lower, upper)
         self._stamp, self._thrust = wrench.stamp, thrust
@@ -247,7 +247,7 @@ class ThrustAllocator:
         achieved = given = self._given @ thrust
         if self._lag is not None:
             self._lag.hold(stamp, thrust)
-            given = self._solver.tables[0] @ thrust + self._coming
+            given = self._slope @ thrust + self._coming
         saturated = np.empty(thrust.size, dtype=np.bool_)
         mark_saturated(thrust, lower, upper, self._margin, self._reverses, self._dead, saturated)
         residual = tau - given
@@ -264,7 +264,7 @@ class ThrustAllocator:
         return lower, upper
 
     def _exact(self, thrust: Array, tau: Array) -> bool:
-        residual = self._row_scale * (self._solver.tables[0] @ thrust - tau)
+        residual = self._row_scale * (self._slope @ thrust - tau)
         return bool(np.max(np.abs(residual)) <= EXACT)
 
     def _scaled(self, tau: Array, lower: Array, upper: Array, fallback: Array) -> Array:

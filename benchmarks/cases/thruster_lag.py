@@ -19,7 +19,7 @@ def measure(full: bool) -> Iterator[Metric]:
     for name in ("hover", "arm_swing"):
         for share in SHARES:
             changes, roll, offset = _run(name, share, 60.0 if full else 20.0)
-            label = f"allocation_lag_{share:g}_{name}"
+            label = f"thruster_lag_{share:g}_{name}"
             yield Metric(f"{label}_change", _rms(changes), "N", "a tick, each thruster, rms")
             yield Metric(f"{label}_roll", _rms(roll), "deg", "rms")
             yield Metric(f"{label}_roll_greatest", float(np.abs(roll).max()), "deg")

@@ -107,7 +107,7 @@ def measure(full: bool) -> Iterator[Metric]:
         matrix = problem.allocator.matrix
         worst = max(np.abs(matrix @ (problem.ours(tau) - solve(tau))).max() for tau in halves)
         yield Metric(
-            f"allocation_levels_difference_{name}", float(worst), "N", f"{text}, {len(halves)}"
+            f"priorities_difference_{name}", float(worst), "N", f"{text}, {len(halves)}"
             " wrenches", None, Target("value", "<=", 1e-6),
         )  # fmt: skip
     timed = halves[:COUNT]
@@ -123,7 +123,7 @@ def measure(full: bool) -> Iterator[Metric]:
     )
     for name, ratio in timing.ratio.items():
         yield Metric(
-            f"allocation_levels_against_{name}", 1e6 * timing.seconds / COUNT, "us",
+            f"priorities_against_{name}", 1e6 * timing.seconds / COUNT, "us",
             f"{references[name][0]}, cold, once a level", ratio,
             Target("ratio", "<=", 0.6 if name == "quadprog" else 1.0),
         )  # fmt: skip
