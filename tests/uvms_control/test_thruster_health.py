@@ -58,7 +58,8 @@ def test_of_four_verticals_three_still_roll_with_half_the_moment():
     nominal = remaining_authority(matrix, limits, shares)
     shares[3] = 0.0
     remaining = remaining_authority(matrix, limits, shares)
-    assert nominal[3] == pytest.approx(19.6) and remaining[3] == pytest.approx(9.8)
+    assert nominal[3] == pytest.approx(19.6)
+    assert remaining[3] == pytest.approx(9.8)
     assert not lost_axes(remaining, nominal).any()
 
 
@@ -98,7 +99,8 @@ def test_an_uncertain_loss_is_a_suspicion_and_a_small_one_is_nothing():
 def test_a_method_that_estimates_nothing_leaves_all_whole():
     belief = ThrusterBelief(NAMES, {})
     belief.estimate(None)
-    assert belief.effectiveness.tolist() == [1.0, 1.0, 1.0] and belief.suspected == ()
+    assert belief.effectiveness.tolist() == [1.0, 1.0, 1.0]
+    assert belief.suspected == ()
 
 
 @pytest.mark.parametrize(
@@ -171,7 +173,8 @@ def test_a_thruster_that_is_thought_dead_is_tested_now_and_then():
     allocator, left = Allocator(), [0, 1, 1, 1, 1, 1, 1]
     allocation, commands = allocator.run(8.0, np.zeros(6), budget(left))
     tested = commands[:, 0]
-    assert tested.max() == pytest.approx(0.03 * 98.0) and tested.sum() == pytest.approx(0.0)
+    assert tested.max() == pytest.approx(0.03 * 98.0)
+    assert tested.sum() == pytest.approx(0.0)
     assert np.mean(tested != 0.0) < 0.35
     assert allocation.achieved == pytest.approx(np.zeros(6))
 
@@ -180,7 +183,9 @@ def test_a_lost_axis_is_an_error_and_a_push_along_it_asks_for_abort():
     allocator, left = Allocator(), [0, 1, 1, 1, 1, 1, 1]
     allocator.run(1.0, np.zeros(6), budget(left))
     trouble = allocator.part.trouble()
-    assert trouble.level == ERROR and "surge lost" in trouble.text and "abort" not in trouble.text
+    assert trouble.level == ERROR
+    assert "surge lost" in trouble.text
+    assert "abort" not in trouble.text
     allocator.run(4.0, np.zeros(6), budget(left, [-1.0, 0, 0, 0, 0, 0]))
     assert "cannot hold it: abort" in allocator.part.trouble().text
     assert allocator.part.status()["authority_surge"] == 0.0
@@ -194,5 +199,6 @@ def test_saturation_and_what_is_missing_are_told_after_a_while():
     assert allocator.part.trouble() is None
     allocator.run(3.0, [200.0, 0, 0, 0, 0, 0])
     trouble = allocator.part.trouble()
-    assert trouble.level == ERROR and "surge: not achieved for more than 2 s" in trouble.text
+    assert trouble.level == ERROR
+    assert "surge: not achieved for more than 2 s" in trouble.text
     assert "main at the limit for more than 3 s" in trouble.text

@@ -59,14 +59,9 @@ def decide(evidence: Array, lost: Array) -> Verdict:
     alone = gain - others >= max(MARGIN, MARGIN_SHARE * gain)
     if not alone or not _is_in_step(evidence[i]):
         return NOTHING
-    certain = gain >= CERTAIN
-    return Verdict(
-        i,
-        bool(certain),
-        float(share),
-        float(evidence[i, columns.SIGMA]),
-        int(evidence[i, columns.ONSET]),
-    )
+    sigma = abs(share) / np.sqrt(gain)  # of a regression; of a stuck thrust what chi^2 is worth
+    onset = int(evidence[i, columns.ONSET])
+    return Verdict(i, bool(gain >= CERTAIN), float(share), float(sigma), onset)
 
 
 def _is_in_step(row: Array) -> bool:
