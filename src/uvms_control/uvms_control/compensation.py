@@ -106,7 +106,7 @@ class EndEffectorCompensation:
         and nothing drifts where the arm is redundant.
         """
         if dt <= 0.0:
-            return JointCorrection(*self._state, np.zeros(self._lower.size))
+            return JointCorrection(self._state[0], self._state[1], np.zeros(self._lower.size))
         low, high = self._bounds(desired.q)
         own, config = self._config.bandwidth, self._config
         followed = _compensate(
@@ -261,7 +261,8 @@ def _scale(steps: Array, worth: Array, push: Array, price: float, dt: float) -> 
 def _damped_inverse(jacobian: Array, damping: float) -> Array:
     """J^T (J J^T + damping^2 I)^-1."""
     damped = jacobian @ jacobian.T + damping**2 * np.eye(3)
-    inverse: Array = np.linalg.solve(damped, jacobian).T.copy()
+    inverse = np.empty((jacobian.shape[1], 3))
+    inverse[:] = np.linalg.solve(damped, jacobian).T
     return inverse
 
 
