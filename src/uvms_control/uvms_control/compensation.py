@@ -26,6 +26,9 @@ and r of what the hull's loop can, r being the share that the free hull takes ba
 What the vehicle does steadily (swell) is followed without lag, by the rate of the demand, as far as
 the estimated velocity is worth it: g = 1 - (its variance by its own covariance) / (its mean square)
 is the gain of a Wiener filter for a signal in noise of known power.
+
+Where the vehicle's own loop is faster than the filter, a correction c comes too late and would add
+to the error: of it is kept <d c> / <c^2>, d being the demand, which leaves the least of d - a c.
 """
 
 from typing import NamedTuple
@@ -90,6 +93,7 @@ class EndEffectorCompensation:
         self._seen = 0
         self._steps = np.zeros(n)  # mean square of the demand's third differences
         self._powers = np.zeros(2)  # mean squares of the demand's rate, and of its noise
+        self._use = np.zeros((2, n))  # means of demand times correction, and of its square
         self.bandwidth = np.zeros(n)
         self.rate_gain = np.zeros(n)
 
@@ -102,7 +106,7 @@ class EndEffectorCompensation:
         and nothing drifts where the arm is redundant.
         """
         if dt <= 0.0:
-            return JointCorrection(*self._state, np.zeros(self._lower.size))
+            return JointCorrection(self._state[0], self._state[1], np.zeros(self._lower.size))
         low, high = self._bounds(desired.q)
         own, config = self._config.bandwidth, self._config
         followed = _compensate(
@@ -112,13 +116,13 @@ class EndEffectorCompensation:
             mass,
             (low, high),
             (config.damping, config.max_rate, self._price, self.fastest, self.hull, own or 0.0),
-            (self._state, self._demands, self._steps, self._powers),
+            (self._state, self._demands, self._steps, self._powers, self._use),
             (self.bandwidth, self.rate_gain),
             self._seen,
             dt,
         )
         self._seen += 1
-        return JointCorrection(*followed)
+        return JointCorrection(followed[0], followed[1], followed[2])
 
     def _bounds(self, q: Array) -> tuple[Array, Array]:
         """The largest angle and the joint limits, but never away from a reference there."""
@@ -142,7 +146,7 @@ def _compensate(
 ) -> Array:
     """The next correction (3, n); `memory` and `chosen`, bandwidth and rate gain, are renewed."""
     damping, max_rate, price, fastest, hull, own = numbers
-    state, demands, steps, powers = memory
+    state, demands, steps, powers, use = memory
     bandwidth, rate_gain = chosen
     low, high = bounds
     wanted, rate, noise, recoil, worth, push = _demand(model, at, to, mass, low, high, damping)
@@ -156,7 +160,20 @@ def _compensate(
         bandwidth[i] = own if own > 0.0 else min(scale * np.sqrt(worth[i] / push[i]), most)
     out = _follow(state, wanted, rate_gain * rate, bandwidth, dt, low, high, max_rate)
     state[:] = out[:2]
+    _keep_what_helps(use, wanted, out, max(dt / MEMORY_S, 1.0 / (seen + 1)))
     return out
+
+
+@exact_inner
+def _keep_what_helps(use: Array, wanted: Array, out: Array, share: float) -> None:
+    """Scale the correction (in place) by <d c> / <c^2>, at most 1: least squares of d - a c."""
+    for i in range(wanted.shape[0]):
+        use[0, i] += share * (wanted[i] * out[0, i] - use[0, i])
+        use[1, i] += share * (out[0, i] ** 2 - use[1, i])
+        if use[1, i] > 0.0:
+            gain = min(max(use[0, i] / use[1, i], 0.0), 1.0)
+            for k in range(3):
+                out[k, i] *= gain
 
 
 @exact_inner
@@ -244,7 +261,9 @@ def _scale(steps: Array, worth: Array, push: Array, price: float, dt: float) -> 
 def _damped_inverse(jacobian: Array, damping: float) -> Array:
     """J^T (J J^T + damping^2 I)^-1."""
     damped = jacobian @ jacobian.T + damping**2 * np.eye(3)
-    return np.linalg.solve(damped, jacobian).T.copy()
+    inverse = np.empty((jacobian.shape[1], 3))
+    inverse[:] = np.linalg.solve(damped, jacobian).T
+    return inverse
 
 
 @exact_inner
