@@ -65,10 +65,10 @@ class Scenario(Config):
     )
     observer: ObserverConfig = Field(ObserverConfig(), description="disturbance observer")
     planner: PlannerConfig = Field(PlannerConfig(), description="motion planner")
-    control: ControlConfig = Field(ControlConfig(), description="vehicle and arm controllers")
     allocation: AllocatorConfig = Field(
         AllocatorConfig(), description="distribution of the wrench over the thrusters"
     )
+    control: ControlConfig = Field(ControlConfig(), description="vehicle and arm controllers")
     goal: Goal = Field(
         Goal(), description="what the planner is asked for; none: to hold the pose of the start"
     )
@@ -104,6 +104,19 @@ class Scenario(Config):
             return own.resolved()
         except UvmsError as fault:
             raise ValueError(str(fault)) from fault
+
+    @field_validator("control")
+    @classmethod
+    def _knows_the_allocator(cls, own: ControlConfig, info: ValidationInfo) -> ControlConfig:
+        """Gains are laid out for the lag that the allocator leaves, unless the scenario says so."""
+        allocation = info.data.get("allocation")
+        if allocation is None or "lag_compensation" in own.gains.model_fields_set:
+            return own
+        share = allocation.lag_compensation
+        if share == own.gains.lag_compensation:
+            return own
+        gains = own.gains.model_copy(update={"lag_compensation": share})
+        return own.model_copy(update={"gains": gains})
 
     @field_validator("navigation")
     @classmethod

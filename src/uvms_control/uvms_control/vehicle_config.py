@@ -2,6 +2,7 @@
 
 from pydantic import Field
 
+from uvms_control.allocator_config import LAG_COMPENSATION
 from uvms_control.six import SixNotNegative, SixPositive
 from uvms_core.config import Config
 
@@ -33,14 +34,14 @@ class GainConfig(Config):
         description="further delay that the loop must bear, in control periods",
     )
     lag_compensation: float = Field(
-        default=1.0,
+        default=LAG_COMPENSATION,
         ge=0.0,
         le=1.0,
-        description="share of the thrusters' lag that the allocator makes up for, as"
-        " allocation.lag_compensation says; the gains are laid out for it",
+        description="share of the thrusters' lag that the allocator makes up for, for which the"
+        " gains are laid out; in a scenario that of allocation.lag_compensation unless given",
     )
     noise_share: float = Field(
-        default=0.05,
+        default=0.01,
         gt=0.0,
         le=1.0,
         description="share of an axis's thrust that may go into following sensor noise, rms",
