@@ -113,7 +113,8 @@ class Scenario(Config):
         if allocation is None or "lag_compensation" in own.gains.model_fields_set:
             return own
         share = allocation.lag_compensation
-        if share == own.gains.lag_compensation:
+        ignored = getattr(own.part(), "ignores", {})
+        if share == own.gains.lag_compensation or "gains" in ignored:
             return own
         gains = own.gains.model_copy(update={"lag_compensation": share})
         return own.model_copy(update={"gains": gains})
