@@ -19,12 +19,12 @@ from uvms_control.design import (
 )
 from uvms_control.design.conditions import check_slopes
 from uvms_control.design.gains import axis_designs
-from uvms_control.design.sensor_noise import settled
 from uvms_control.errors import ControlSetupError
 from uvms_control.paper_controller import PaperController
 from uvms_core.vehicle import load_vehicle
 from uvms_core.vehicle.locate import known_vehicles, vehicle_path
 from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics.sensor_noise import settled
 
 FREE = Axis(inertia=300.0, lag=0.12, authority=90.0)
 HULL = Axis(inertia=5.0, righting=28.0, drag=5.0, lag=0.12, authority=19.6)

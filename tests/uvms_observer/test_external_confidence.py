@@ -5,6 +5,7 @@ import pytest
 from small_plant import PERIOD, SmallPlant, run, steered
 
 from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.external_bandwidth import NOISE_SHARE, PHASE_RAD, thrust_authority
 from uvms_dynamics.joint_prediction import loop_delay
 from uvms_observer import (
     CombinedObserver,
@@ -13,7 +14,6 @@ from uvms_observer import (
     ObserverConfig,
     external_bandwidth,
 )
-from uvms_observer.disturbance.bandwidth import NOISE_SHARE, PHASE_RAD, thrust_authority
 from uvms_observer.disturbance.none import NoObserver
 from uvms_observer.disturbance.observer import FormerObserver
 

@@ -3,8 +3,8 @@
 from uvms_control.design.axis import Axis, AxisGains
 from uvms_control.design.bandwidth import AxisDesign, Limits, largest_bandwidth
 from uvms_control.design.margins import Margins, loop_margins
-from uvms_control.design.sensor_noise import sensor_noise
 from uvms_control.design.vehicle_axes import Timing, axis_thrust, vehicle_axes
+from uvms_dynamics.sensor_noise import sensor_noise
 
 __all__ = [
     "Axis",

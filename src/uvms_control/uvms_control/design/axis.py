@@ -43,11 +43,12 @@ class Axis:
     authority: float = np.inf  # greatest force or moment, N or N m
     position_noise: float = 0.0  # std of the estimate, from tick to tick, m or rad
     rate_noise: float = 0.0  # m/s or rad/s
+    observer: float = 0.0  # K, rad/s: bandwidth of the external wrench that is fed forward
 
     def __post_init__(self) -> None:
         for name in ("inertia", "period", "authority"):
             _require(name, getattr(self, name), getattr(self, name) > 0.0, "above 0")
-        for name in ("drag", "lag", "delay", "position_noise", "rate_noise"):
+        for name in ("drag", "lag", "delay", "position_noise", "rate_noise", "observer"):
             value = getattr(self, name)
             _require(name, value, 0.0 <= value < np.inf, "0 or more")
         share = self.lag_compensated

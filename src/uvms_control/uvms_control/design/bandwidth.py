@@ -1,6 +1,6 @@
 """The largest bandwidth of an axis that keeps its margins.
 
-    P = w^2,    D = 2 zeta sqrt(P + c / m),    K = kappa w
+    P = w^2,    D = 2 zeta sqrt(P + c / m),    K as the observer has it
 
 The hull's righting stiffness c acts beside P, and the damping is that of both together; the hull's
 own drag comes on top. Of several damping ratios zeta the one that reaches furthest is taken: the
@@ -42,7 +42,6 @@ class Limits:
     noise_share: float = 0.05  # of the authority, rms, spent on sensor noise
     phase: float = np.radians(30.0)  # of the thrusters' response
     ratios: tuple[float, ...] = (0.8, 1.0, 0.6)  # zeta: what the gains may be laid out for
-    observer: float = 1.0 / 3.0  # kappa: the external observer's bandwidth by the feedback's
     highest: float = np.inf  # bandwidth that is asked for at most, rad/s
 
 
@@ -79,7 +78,7 @@ def largest_bandwidth(axis: Axis, limits: Limits = Limits()) -> AxisDesign:
     for hull in (True, False):
         best: AxisDesign | None = None
         for ratio in limits.ratios:
-            best = _larger(axis, limits, _Layout(ratio, hull, limits.observer), best)
+            best = _larger(axis, limits, _Layout(ratio, hull), best)
         if best is not None:
             return best
     return AxisDesign(axis, 0.0, limits.ratios[0], AxisGains(0.0, 0.0), REASONS[-1])
@@ -91,12 +90,11 @@ class _Layout:
 
     ratio: float
     hull: bool  # damp the hull's own swinging as well
-    observer: float
 
     def gains(self, axis: Axis, bandwidth: float) -> AxisGains:
         stiffness = bandwidth**2
         whole = stiffness + max(axis.hull_stiffness, 0.0) if self.hull else stiffness
-        return AxisGains(stiffness, 2.0 * self.ratio * sqrt(whole), self.observer * bandwidth)
+        return AxisGains(stiffness, 2.0 * self.ratio * sqrt(whole), axis.observer)
 
     def damping(self, axis: Axis, gains: AxisGains) -> float:
         """Share of the damping laid out: below 1 where the hull keeps its own."""

@@ -113,7 +113,7 @@ def _design(axis: Axis | None, k: int, limits: Limits, config: GainConfig) -> Ax
 
     def gains_at(value: float, zeta: float) -> AxisGains:
         damping = 2.0 * zeta * sqrt(max(value**2 + axis.hull_stiffness, 0.0))
-        return AxisGains(value**2, damping, limits.observer * value)
+        return AxisGains(value**2, damping, axis.observer)
 
     # With a usual damping ratio first: what only a large one breaks is not the bandwidth's fault.
     usual = min(ratio, 1.0)

@@ -6,12 +6,13 @@ import numpy as np
 
 from uvms_control.controlled_axes import axes_of
 from uvms_control.design.axis import Axis
-from uvms_control.design.sensor_noise import sensor_noise
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.resistance import axis_resistance
 from uvms_core.vehicle.statics import first_moment
 from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics.external_bandwidth import external_bandwidth
+from uvms_dynamics.sensor_noise import sensor_noise
 
 
 @dataclass(frozen=True)
@@ -36,6 +37,7 @@ def vehicle_axes(vehicle: Vehicle, q: Array, timing: Timing) -> tuple[Axis | Non
     drag, _ = axis_resistance(vehicle.hull, vehicle.environment.water_density_kg_m3)
     pose, rate = sensor_noise(vehicle)
     authority, lag = axis_thrust(vehicle)
+    external = external_bandwidth(vehicle, timing.period)
     return tuple(
         Axis(
             inertia=float(inertia[k]),
@@ -48,6 +50,7 @@ def vehicle_axes(vehicle: Vehicle, q: Array, timing: Timing) -> tuple[Axis | Non
             authority=float(authority[k]),
             position_noise=float(pose[k]),
             rate_noise=float(rate[k]),
+            observer=float(external[k]),
         )
         if authority[k] > 0.0
         else None

@@ -1,6 +1,6 @@
 """Disturbance observers, from none to eq. (21) with external wrench and payload."""
 
-from uvms_observer.disturbance.bandwidth import external_bandwidth
+from uvms_dynamics.external_bandwidth import external_bandwidth
 from uvms_observer.disturbance.observer import (
     CombinedObserver,
     DisturbanceObserver,

@@ -18,9 +18,9 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
+from uvms_dynamics.external_bandwidth import external_bandwidth
 from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
 from uvms_dynamics.payload import COLUMNS, LoadedModel
-from uvms_observer.disturbance.bandwidth import external_bandwidth
 from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
 from uvms_observer.disturbance.model_parts import ModelParts
 from uvms_observer.disturbance.observer_config import ObserverConfig

@@ -1,6 +1,7 @@
-"""The external wrench's bandwidth by rule: from noise, inertia, authority and lag."""
+"""The external wrench's bandwidth by rule: from noise, inertia, authority and lag.
 
-from math import sqrt
+The observer takes it, and the gains of the control law are laid out for it.
+"""
 
 import numpy as np
 
@@ -8,6 +9,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import build_model, mass_matrix, thruster_matrix
 from uvms_dynamics.joint_prediction import encoder_variances, loop_delay
+from uvms_dynamics.sensor_noise import sensor_noise
 
 NOISE_SHARE = 0.01
 """Share of an axis's thrust that the noise of the estimate may take, one standard deviation."""
@@ -32,7 +34,7 @@ def external_bandwidth(vehicle: Vehicle, period_s: float) -> Array:
     q = np.radians(vehicle.arm.stowed_deg)
     inertia = mass_matrix(build_model(vehicle), q)[:6]
     rate = np.full(vehicle.n_joints, encoder_variances(vehicle)[1])
-    momentum = np.sqrt(inertia**2 @ np.concatenate((velocity_noise(vehicle) ** 2, rate)))
+    momentum = np.sqrt(inertia**2 @ np.concatenate((sensor_noise(vehicle)[1] ** 2, rate)))
     authority = thrust_authority(vehicle)
     by_noise = NOISE_SHARE * authority / np.maximum(momentum, 1e-12)
     return np.where(authority > 0.0, np.minimum(by_noise, fastest), fastest)
@@ -44,16 +46,3 @@ def thrust_authority(vehicle: Vehicle) -> Array:
     authority = np.abs(thruster_matrix(vehicle)) @ greatest
     authority[authority < 1e-9 * authority.max()] = 0.0  # rounding of directions
     return authority
-
-
-def velocity_noise(vehicle: Vehicle) -> Array:
-    """Noise (6,) of the velocity estimate by the sensors, m/s and rad/s, one std.
-
-    Linear: the steady state of a Kalman filter that integrates the accelerometer between samples of
-    the DVL, P = (sqrt(Q^2 + 4 Q R) - Q) / 2 after one. Angular: the gyro's.
-    """
-    imu, dvl = vehicle.sensors.imu, vehicle.sensors.dvl
-    steps = max(imu.rate_hz / dvl.rate_hz, 1.0)
-    Q, R = steps * (imu.accelerometer_noise_m_s2 / imu.rate_hz) ** 2, dvl.noise_m_s**2
-    linear = sqrt(0.5 * (sqrt(Q * Q + 4.0 * Q * R) - Q))
-    return np.repeat([linear, np.radians(imu.gyro_noise_deg_s)], 3)
