@@ -107,17 +107,25 @@ class Scenario(Config):
 
     @field_validator("control")
     @classmethod
-    def _knows_the_allocator(cls, own: ControlConfig, info: ValidationInfo) -> ControlConfig:
-        """Gains are laid out for the lag that the allocator leaves, unless the scenario says so."""
-        allocation = info.data.get("allocation")
-        if allocation is None or "lag_compensation" in own.gains.model_fields_set:
+    def _knows_the_others(cls, own: ControlConfig, info: ValidationInfo) -> ControlConfig:
+        """Gains are laid out for this observer and allocator, unless the scenario says so."""
+        allocation, observer = info.data.get("allocation"), info.data.get("observer")
+        if allocation is None or observer is None or "gains" in getattr(own.part(), "ignores", {}):
             return own
-        share = allocation.lag_compensation
-        ignored = getattr(own.part(), "ignores", {})
-        if share == own.gains.lag_compensation or "gains" in ignored:
+        compensates = getattr(allocation.part(), "compensates", False)
+        told = {
+            "lag_compensation": allocation.lag_compensation if compensates else 0.0,
+            "external_bandwidth_rad_s": observer.external_bandwidth_rad_s,
+        }
+        given = own.gains.model_fields_set
+        changed = {
+            name: value
+            for name, value in told.items()
+            if name not in given and value != getattr(own.gains, name)
+        }
+        if not changed:
             return own
-        gains = own.gains.model_copy(update={"lag_compensation": share})
-        return own.model_copy(update={"gains": gains})
+        return own.model_copy(update={"gains": own.gains.model_copy(update=changed)})
 
     @field_validator("navigation")
     @classmethod

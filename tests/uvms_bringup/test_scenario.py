@@ -375,3 +375,19 @@ def test_the_installed_share_folder_is_found(tmp_path, monkeypatch):
     monkeypatch.setenv("AMENT_PREFIX_PATH", "/nowhere")
     with pytest.raises(ScenarioError, match=r"were not found; looked for\n  .*\n  /nowhere/share/"):
         locate.scenario_folder()
+
+
+@pytest.mark.parametrize(
+    ("settings", "share", "external"),
+    [
+        ([], 0.8, None),
+        (["allocation.lag_compensation=0.3"], 0.3, None),
+        (["allocation.method=weighted_least_squares"], 0.0, None),
+        (["observer.external_bandwidth_rad_s=2.0"], 0.8, 2.0),
+        (["allocation.lag_compensation=0.3", "control.gains.lag_compensation=0.5"], 0.5, None),
+    ],
+)
+def test_gains_are_laid_out_for_observer_and_allocator_as_they_are(settings, share, external):
+    gains = load_scenario("hover", settings).control.gains
+    assert gains.lag_compensation == share
+    assert gains.external_bandwidth_rad_s == external

@@ -7,7 +7,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from scipy.optimize import linprog
 
-from uvms_control import ControlConfig, Controller, ControlSetupError
+from uvms_control import ControlConfig, Controller
 from uvms_control.controlled_axes import AXES, axes_of, controlled_axes
 from uvms_core.signals import Allocation, DisturbanceBudget, Wrench, to_nanoseconds
 from uvms_core.vehicle import load_vehicle
@@ -63,9 +63,12 @@ def test_axes_that_nothing_brings_back_are_taken_first():
         assert taken == set(order[:m])
 
 
-def test_a_layout_that_does_not_push_is_refused():
-    with pytest.raises(ControlSetupError, match="none of them pushes"):
-        axes_of(REFERENCE, np.zeros(len(NAMES)))
+def test_dead_thrusters_control_nothing():
+    """All of them told dead: the law asks for nothing, and goes on."""
+    axes = axes_of(REFERENCE, np.zeros(len(NAMES)))
+    assert not axes.is_controlled.any()
+    assert not axes.passing.any()
+    assert not axes.authority.any()
 
 
 LAYOUTS = [

@@ -26,8 +26,8 @@ from uvms_core.vehicle.locate import known_vehicles, vehicle_path
 from uvms_dynamics import build_model, mass_matrix
 from uvms_dynamics.sensor_noise import settled
 
-FREE = Axis(inertia=300.0, lag=0.12, authority=90.0)
-HULL = Axis(inertia=5.0, righting=28.0, drag=5.0, lag=0.12, authority=19.6)
+FREE = Axis(inertia=300.0, lag=0.12, authority=90.0, observer=0.9)
+HULL = Axis(inertia=5.0, righting=28.0, drag=5.0, lag=0.12, authority=19.6, observer=0.8)
 PERIOD = 0.05
 
 
@@ -46,7 +46,7 @@ def test_the_loop_keeps_its_limits_and_would_not_with_more(axis):
     assert margins.damping_ratio >= limits.damping * (1.0 - 1e-9)
     more = 1.01 * found.bandwidth
     whole = more**2 + axis.righting / axis.inertia
-    gains = AxisGains(more**2, 2.0 * found.ratio * np.sqrt(whole), limits.observer * more)
+    gains = AxisGains(more**2, 2.0 * found.ratio * np.sqrt(whole), axis.observer)
     beyond = loop_margins(axis, gains)
     worse = {
         "delay margin": beyond.delay_margin < limits.delay_periods * axis.period,
@@ -196,3 +196,19 @@ def test_the_bound_of_a_refused_gain_is_where_the_loop_turns_unstable():
 def test_gains_must_be_positive():
     with pytest.raises(ControlSetupError, match="gains damping of surge: 0, expected above 0"):
         check_slopes("gains", [FREE] * 6, [1.0] * 6, [0.0] * 6)
+
+
+@pytest.mark.parametrize("righting", [-0.05, -1.0, -5.0])
+def test_a_hull_that_turns_over_is_held(righting):
+    """No small bandwidth keeps it up, so that the least one has to be looked for."""
+    axis = replace(HULL, righting=righting, lag=0.02)
+    found = largest_bandwidth(axis)
+    assert found.bandwidth > np.sqrt(-righting / axis.inertia)
+    assert found.margins.stable
+
+
+def test_limits_that_nothing_keeps_are_refused():
+    config = ControlConfig(gains={"noise_share": 1e-7})
+    controller = Controller(vehicle_of("reference_auv"), config)
+    with pytest.raises(ControlSetupError, match=r"no bandwidth of \w+ keeps the margins; raise"):
+        controller.prepare(PERIOD)

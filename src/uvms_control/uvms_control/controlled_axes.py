@@ -12,7 +12,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from uvms_control.errors import ControlSetupError
 from uvms_control.vehicle_data import thruster_limits
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
@@ -56,17 +55,16 @@ def controlled_axes(matrix: Array, lower: Array, upper: Array, constants: Array)
         upper: (m,) greatest ahead, N.
         constants: (m,) time constants of the thrusters, s.
 
-    Raises:
-        ControlSetupError: there is no thruster that pushes.
+    None is controlled where no thruster pushes.
     """
     limits = np.where(lower < 0.0, np.minimum(-lower, upper), upper)
     shares = matrix * limits
     taken = _independent(shares)
-    if not taken:
-        raise ControlSetupError("thrusters: none of them pushes the vehicle; needs at least one")
     inverse = np.zeros((limits.size, 6))
-    inverse[:, taken] = np.linalg.pinv(shares[taken])
     authority, lag = np.zeros(6), np.zeros(6)
+    if not taken:
+        return ControlledAxes(np.zeros(6, dtype=np.bool_), np.zeros((6, 6)), authority, lag)
+    inverse[:, taken] = np.linalg.pinv(shares[taken])
     used = np.abs(inverse)
     authority[taken] = 1.0 / used[:, taken].max(axis=0)
     acts = used > 1e-6 * np.maximum(used.max(axis=0), 1e-300)

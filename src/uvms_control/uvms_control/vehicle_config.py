@@ -40,6 +40,14 @@ class GainConfig(Config):
         description="share of the thrusters' lag that the allocator makes up for, for which the"
         " gains are laid out; in a scenario that of allocation.lag_compensation unless given",
     )
+    external_bandwidth_rad_s: float | None = Field(
+        default=None,
+        gt=0.0,
+        le=10.0,
+        description="bandwidth of the observer's external wrench, for which the gains are laid out,"
+        " rad/s; none: the observer's by rule; in a scenario that of"
+        " observer.external_bandwidth_rad_s unless given",
+    )
     noise_share: float = Field(
         default=0.01,
         gt=0.0,

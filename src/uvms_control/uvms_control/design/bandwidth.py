@@ -28,6 +28,8 @@ from uvms_control.design.margins import (
 
 LOWEST = 1e-3
 """Of the Nyquist frequency: the least bandwidth that counts."""
+STEP = 1.6
+"""Ratio of the bandwidths that are tried to find one that keeps the limits."""
 RESOLUTION = 1.002
 """Of the bandwidth that is found."""
 
@@ -136,14 +138,17 @@ def _larger(
 ) -> AxisDesign | None:
     """The largest bandwidth of a family, or `best` where that reaches further."""
     nyquist = pi / axis.period
-    low = LOWEST * nyquist if best is None else best.bandwidth
     high = min(nyquist, limits.highest)
 
     def fault(bandwidth: float) -> str | None:
         gains = layout.gains(axis, bandwidth)
         return broken(axis, gains, limits, layout.damping(axis, gains))
 
-    if fault(low) is not None:
+    # A hull that turns over bears no small bandwidth: the least one has to be looked for.
+    lowest = LOWEST * nyquist if best is None else best.bandwidth
+    tried = np.geomspace(lowest, high, 2 + int(np.log(max(high / lowest, 1.0)) / np.log(STEP)))
+    low = next((float(each) for each in tried if fault(float(each)) is None), None)
+    if low is None:
         return best
     reason = fault(high)
     if reason is None:

@@ -16,6 +16,7 @@ from uvms_control.design.axis import Axis, AxisGains
 from uvms_control.design.bandwidth import AxisDesign, Limits, largest_bandwidth
 from uvms_control.design.conditions import require_stable
 from uvms_control.design.vehicle_axes import Timing, vehicle_axes
+from uvms_control.errors import ControlSetupError
 from uvms_control.vehicle_config import GainConfig
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
@@ -58,7 +59,8 @@ def vehicle_gains(vehicle: Vehicle, period: float, config: GainConfig) -> Vehicl
     """The gains for a control period in s.
 
     Raises:
-        ControlSetupError: the loop would not be stable with a bandwidth of the configuration.
+        ControlSetupError: the loop would not be stable with a bandwidth of the configuration, or no
+            bandwidth of an axis keeps the margins.
     """
     designs = axis_designs(vehicle, period, config)
     gains = [AxisGains(0.0, 0.0) if each is None else each.gains for each in designs]
@@ -90,17 +92,30 @@ def axis_designs(
     """
     angles = [q for _, q in postures(vehicle)] if angles is None else angles
     limits = Limits(delay_periods=config.delay_margin_periods, noise_share=config.noise_share)
-    timing = Timing(period, lag_compensated=config.lag_compensation)
+    timing = Timing(
+        period,
+        lag_compensated=config.lag_compensation,
+        external=config.external_bandwidth_rad_s,
+    )
     by_posture = [vehicle_axes(vehicle, q, timing) for q in angles]
     return tuple(
-        _least([_design(each, k, limits, config) for each in axes])
+        _least([_design(each, k, limits, config) for each in axes], k)
         for k, axes in enumerate(zip(*by_posture, strict=True))
     )
 
 
-def _least(designs: list[AxisDesign | None]) -> AxisDesign | None:
+def _least(designs: list[AxisDesign | None], k: int) -> AxisDesign | None:
     found = [each for each in designs if each is not None]
-    return min(found, key=lambda each: each.gains.stiffness) if found else None
+    if not found:
+        return None
+    least = min(found, key=lambda each: each.gains.stiffness)
+    if least.gains.stiffness <= 0.0:
+        raise ControlSetupError(
+            f"control.gains: no bandwidth of {AXES[k]} keeps the margins; raise"
+            " control.gains.noise_share, lower control.gains.delay_margin_periods, or set"
+            " control.gains.bandwidth_rad_s"
+        )
+    return least
 
 
 def _design(axis: Axis | None, k: int, limits: Limits, config: GainConfig) -> AxisDesign | None:

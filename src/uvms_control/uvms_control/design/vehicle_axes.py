@@ -22,6 +22,7 @@ class Timing:
     period: float  # of the control loop, s
     delay: float = 0.0  # from the sensors' stamp to the thrusters' command, s
     lag_compensated: float = 0.0  # share of the thrusters' lag that the allocator makes up for
+    external: float | None = None  # bandwidth of the external wrench, rad/s; None: by rule
 
 
 def vehicle_axes(vehicle: Vehicle, q: Array, timing: Timing) -> tuple[Axis | None, ...]:
@@ -38,6 +39,8 @@ def vehicle_axes(vehicle: Vehicle, q: Array, timing: Timing) -> tuple[Axis | Non
     pose, rate = sensor_noise(vehicle)
     authority, lag = axis_thrust(vehicle)
     external = external_bandwidth(vehicle, timing.period)
+    if timing.external is not None:
+        external = np.full(6, timing.external)
     return tuple(
         Axis(
             inertia=float(inertia[k]),
