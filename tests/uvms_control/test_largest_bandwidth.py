@@ -75,9 +75,7 @@ def test_ideal_thrusters_are_bounded_by_the_period_alone():
 
 
 def test_a_vehicle_that_is_slower_in_all_its_times_gets_a_bandwidth_as_much_lower():
-    slow = replace(
-        FREE, lag=3.0 * FREE.lag, period=3.0 * FREE.period, observer=FREE.observer / 3.0
-    )
+    slow = replace(FREE, lag=3.0 * FREE.lag, period=3.0 * FREE.period, observer=FREE.observer / 3.0)
     expected = largest_bandwidth(FREE).bandwidth / 3.0
     assert largest_bandwidth(slow).bandwidth == pytest.approx(expected, rel=5e-3)
 

@@ -30,6 +30,7 @@ class Water:
         self._rng = np.random.default_rng(seed)
         self._tau = np.array([one.time_constant_s for one in self.vehicle.thrusters])
         self._told, self._given = np.zeros(self.m), np.zeros(self.m)
+        self.told_dt = iter(lambda: DT, None)  # what the monitor is told of the time between ticks
 
     def step(self, command, disturbance=CALM, believed=ALL):
         """One tick under a command (m,), N, and a disturbance (6,)."""
@@ -43,7 +44,7 @@ class Water:
         counted = told if not believed.size else believed * told
         noise = SIGMA * self._rng.standard_normal(6)
         wrench = self.matrix @ (given - counted) + disturbance + noise
-        return self.monitor.step(DT, wrench, np.zeros(6), command, believed)
+        return self.monitor.step(next(self.told_dt), wrench, np.zeros(6), command, believed)
 
     def moved(self, t):
         """Commands (m,) that move, each in its own way, up to a fifth of the limits."""
@@ -73,6 +74,20 @@ def test_each_thruster_is_named_by_its_direction_within_two_seconds(name, left):
         assert abs(lost[i] - (1.0 - left)) < max(3.0 * health.sigma[i], 0.25)
         assert np.delete(lost, i) == pytest.approx(0.0)
         assert lost[i] > 2.0 * health.sigma[i]
+
+
+@pytest.mark.parametrize("jitter", [1e-5, 1e-3, 5e-3])
+def test_ticks_that_jitter_or_are_lost_do_not_hide_a_fault(jitter):
+    """Stamps of real sensors are not on a grid, and now and then a tick is lost."""
+    water, i = Water("reference_auv"), 2
+    rng = np.random.default_rng(4)
+    told = (2 * DT if k % 20 == 19 else DT + jitter * rng.standard_normal() for k in range(10**6))
+    water.told_dt = told
+    run(water, 0.0, 6.0)
+    water.left[i] = 0.0
+    health = run(water, 6.0, 9.0)[-1]
+    assert (1.0 - health.effectiveness).argmax() == i
+    assert health.effectiveness[i] < 0.3
 
 
 def test_a_thruster_that_recovers_is_whole_again():

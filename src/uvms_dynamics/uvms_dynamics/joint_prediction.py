@@ -53,7 +53,6 @@ class JointPrediction:
         self._filter = TrackingFilter(3, jerk_rad_s3)
         self._variances = encoder_variances(vehicle)
         self._limit = age_limit_s
-        self._limits: dict[int, float] = {}  # by interval, ns
         self._stamp: int | None = None  # of the last sample
         self._tick: int | None = None
         self.filtered = np.zeros((3, vehicle.n_joints))
@@ -70,10 +69,7 @@ class JointPrediction:
             return self._limit
         if self._tick is None or tick <= self._tick:
             return checks.MAX_AGE_S
-        interval = tick - self._tick
-        if interval not in self._limits:
-            self._limits[interval] = joint_age_limit(self._vehicle, to_seconds(interval))
-        return self._limits[interval]
+        return joint_age_limit(self._vehicle, to_seconds(tick - self._tick))
 
     def step(self, joints: JointStates, tick: int) -> JointMotion:
         """The joints at a tick, ns; `check` comes before.

@@ -22,7 +22,8 @@ class ObserverLaw(Protocol):
     """Estimates the wrench that acts on the vehicle besides its thrusters.
 
     An observer that wants the thrusts one by one has a method `inform(allocation)`, which is called
-    before each step with the `Allocation` of the tick before (None at the first).
+    before each step with the `Allocation` of the tick before (None at the first). A method
+    `prepare(period)`, in s, is called once before the first step.
     """
 
     @abstractmethod

@@ -10,7 +10,7 @@ from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.sensors import INERTIAL
-from uvms_core.signals import DisturbanceBudget, Odometry, Wrench
+from uvms_core.signals import DisturbanceBudget, Odometry, Wrench, to_seconds
 from uvms_core.tick_gate import KEEP, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 from uvms_observer.arrivals import sensor_inputs, used_sensors
@@ -140,10 +140,10 @@ class ObserverPart(Part):
     outputs = topics.NODES[topics.DISTURBANCE_OBSERVER].outputs
 
     def __init__(self, vehicle: Vehicle, config: ObserverConfig, period: int) -> None:
-        self._vehicle, self._config = vehicle, config
+        self._vehicle, self._config, self._period = vehicle, config, period
         self._good: Wrench | None = None
         self._last: Wrench | None = None
-        self.law: ObserverLaw = create(config, vehicle)
+        self.law = self._make_law()
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Same(),
@@ -167,7 +167,13 @@ class ObserverPart(Part):
     def restart(self, reason: str) -> None:
         """The observer restarts, with no external wrench."""
         self._last = None  # it may be invalid
-        self.law = create(self._config, self._vehicle)
+        self.law = self._make_law()
+
+    def _make_law(self) -> ObserverLaw:
+        law: ObserverLaw = create(self._config, self._vehicle)
+        if prepare := getattr(law, "prepare", None):
+            prepare(to_seconds(self._period))
+        return law
 
     def safe(self, tick: Tick) -> Iterator[Output]:
         """The last good disturbance for a while, then none: a step would jerk the vehicle."""

@@ -134,6 +134,15 @@ class DisturbanceObserver(ModelObserver):
         self._theta = np.zeros(COLUMNS)  # of the payload in the loaded model
         self._external, self._sigma = np.zeros(6), np.zeros(6)
         self._dt, self._gain, self._spread = 0.0, np.zeros(6), np.zeros(6)
+        self._bandwidth = np.empty(0)  # before `prepare`
+
+    def prepare(self, period: float) -> None:
+        """Work out the bandwidth for a control period in s; else the first interval decides."""
+        given = self._config.external_bandwidth_rad_s
+        self._bandwidth = self._rule(period) if given is None else np.full(6, given)
+
+    def _rule(self, period: float) -> Array:
+        return external_bandwidth(self._vehicle, period)
 
     def _observe(
         self,
@@ -172,13 +181,11 @@ class DisturbanceObserver(ModelObserver):
 
     def _set_interval(self, dt: float) -> None:
         """Gain, and std of the estimate over that of the momentum, at intervals of dt s."""
+        if not self._bandwidth.size:
+            self.prepare(dt)
         self._dt = dt
-        self._gain = -np.expm1(-self._bandwidth(dt) * dt)
+        self._gain = -np.expm1(-self._bandwidth * dt)
         self._spread = self._gain / dt * np.sqrt(2.0 / (2.0 - self._gain))
-
-    def _bandwidth(self, dt: float) -> Array:
-        given = self._config.external_bandwidth_rad_s
-        return external_bandwidth(self._vehicle, dt) if given is None else np.full(6, given)
 
 
 class CombinedObserver(DisturbanceObserver):
@@ -227,6 +234,5 @@ class FormerObserver(DisturbanceObserver):
         )
         super().__init__(vehicle, config)
 
-    def _bandwidth(self, dt: float) -> Array:
-        given = self._config.external_bandwidth_rad_s
-        return np.full(6, FORMER_BANDWIDTH_RAD_S if given is None else given)
+    def _rule(self, period: float) -> Array:
+        return np.full(6, FORMER_BANDWIDTH_RAD_S)

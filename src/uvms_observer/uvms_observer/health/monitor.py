@@ -11,6 +11,9 @@ from uvms_observer.health.lagged import LaggedThrusts
 from uvms_observer.health.noise import NoiseLevel
 from uvms_observer.health.verdict import Verdict, decide
 
+ANOTHER_PERIOD = 2.5
+"""The window begins anew where ticks are this many times further apart or closer: jitter and a tick
+that is lost do not end what has been seen."""
 WINDOW_S = 2.0
 """Within it the disturbance is taken to be constant, and a fault has to be told from it."""
 ONSETS = 20
@@ -76,7 +79,7 @@ class ThrusterMonitor:
             thrust: commanded over this tick (m,), N.
             believed: share (m,) with which the thrusters were counted in `unexplained`; (0,): all.
         """
-        if abs(dt - self._dt) > 1e-9:
+        if not self._dt / ANOTHER_PERIOD < dt < self._dt * ANOTHER_PERIOD:
             self._start(dt)
         lagged = self._lag.step(dt, thrust)
         whole = unexplained
