@@ -14,7 +14,7 @@ from uvms_control.parts import AllocatorPart
 from uvms_control.vehicle_data import thruster_limits
 from uvms_core import topics
 from uvms_core.diagnostics import ERROR, WARN
-from uvms_core.errors import ConfigError
+from uvms_core.errors import ConfigError, SignalError
 from uvms_core.signals import DisturbanceBudget, ThrusterHealth, Wrench, to_nanoseconds
 from uvms_core.tick_gate import Tick
 from uvms_core.vehicle import load_vehicle
@@ -202,3 +202,17 @@ def test_saturation_and_what_is_missing_are_told_after_a_while():
     assert trouble.level == ERROR
     assert "surge: not achieved for more than 2 s" in trouble.text
     assert "main at the limit for more than 3 s" in trouble.text
+
+
+def test_a_suspicion_does_not_make_a_dead_thruster_whole():
+    belief = ThrusterBelief(NAMES, {})
+    belief.estimate(ThrusterHealth(np.array([0.0, 1.0, 1.0]), np.array([0.03, 0.2, 0.2])))
+    belief.estimate(ThrusterHealth(np.array([0.9, 1.0, 1.0]), np.array([0.9, 0.2, 0.2])))
+    assert belief.effectiveness[0] == 0.0
+    belief.estimate(ThrusterHealth(np.array([0.95, 1.0, 1.0]), np.array([0.05, 0.2, 0.2])))
+    assert belief.effectiveness[0] == 1.0
+
+
+def test_an_estimate_of_other_thrusters_is_refused():
+    with pytest.raises(SignalError, match="has 2 thrusters; the vehicle has 3"):
+        ThrusterBelief(NAMES, {}).estimate(ThrusterHealth(np.ones(2), np.ones(2)))

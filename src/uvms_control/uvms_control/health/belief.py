@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from uvms_control.errors import ControlSetupError
+from uvms_core.errors import SignalError
 from uvms_core.signals import ThrusterHealth
 
 LEAST_SHARE, GREATEST_SHARE = 0.0, 1.2
@@ -40,6 +41,7 @@ class ThrusterBelief:
         self._said = np.full(len(self.names), np.nan)
         self._source: list[Source] = [""] * len(self.names)
         self._estimate = np.ones(len(self.names))
+        self._seen = b""
         self._suspected = np.zeros(len(self.names), dtype=np.bool_)
         self.effectiveness = np.ones(len(self.names))
         """(m,) share of its command that each thruster is believed to give."""
@@ -62,15 +64,31 @@ class ThrusterBelief:
         self._merge()
 
     def estimate(self, health: ThrusterHealth | None) -> None:
-        """Take what the observer estimates; None: it does not look at the thrusters."""
-        if health is None or health.effectiveness.size != len(self.names):
+        """Take what the observer estimates; None: it does not look at the thrusters.
+
+        A thruster that counts as weak is whole again once that is as certain as its loss was.
+
+        Raises:
+            SignalError: it has another number of thrusters.
+        """
+        if health is None:
             return
+        seen = health.effectiveness.tobytes() + health.sigma.tobytes()
+        if seen == self._seen:
+            return
+        if health.effectiveness.size != len(self.names):
+            raise SignalError(
+                f"thruster health: has {health.effectiveness.size} thrusters; the vehicle has"
+                f" {len(self.names)}"
+            )
+        self._seen = seen
         lost = 1.0 - health.effectiveness
         is_lost = lost >= LEAST_LOSS
-        certain = is_lost & (lost >= SIGMAS * health.sigma)
-        share = np.where(health.effectiveness < DEAD, 0.0, health.effectiveness)
-        self._estimate = np.where(certain, share, 1.0)
-        self._suspected = is_lost & ~certain
+        share = np.where(is_lost, health.effectiveness, 1.0)
+        share[health.effectiveness < DEAD] = 0.0
+        certain = np.abs(health.effectiveness - self._estimate) >= SIGMAS * health.sigma
+        self._estimate = np.where(certain, share, self._estimate)
+        self._suspected = is_lost & ~certain & (self._estimate == 1.0)
         self._merge()
 
     def _merge(self) -> None:
