@@ -33,13 +33,18 @@ class Thrusters:
         self._diagnosis = ThrusterDiagnosis(self._matrix, limits, self.belief)
         self._test = TestThrust(limits, least_thrusts(vehicle))
         self._budget: DisturbanceBudget | None = None
+        self._informed: tuple[Any, Any] = (None, None)  # who was told, and what
 
     def before(self, method: Any, budget: DisturbanceBudget | None) -> None:
         """Take the estimate of the tick before, and tell the method what is believed."""
         self._budget = budget
         self.belief.estimate(None if budget is None else budget.thrusters)
+        informed = method, self.belief.effectiveness
+        if informed[0] is self._informed[0] and informed[1] is self._informed[1]:
+            return
         if tell := getattr(method, "set_effectiveness", None):
             tell(self.belief.effectiveness)
+        self._informed = informed
 
     def after(self, told: Told) -> Told:
         """The method's answer with what the thrusters will really give, and with test thrusts."""
