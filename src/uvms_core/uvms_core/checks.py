@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 
-from uvms_core.errors import SignalError
+from uvms_core.errors import SignalError, StaleError
 from uvms_core.signals import Array, OnlyIf, Shape, to_nanoseconds
 
 QUATERNION_TOLERANCE = 1e-3

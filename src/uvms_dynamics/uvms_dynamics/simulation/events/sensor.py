@@ -155,12 +155,12 @@ class SilentFault(_Delivery):
 
     def check(self, vehicle: Vehicle) -> None:
         """Whether the loop can do without the sensor."""
-        super().check(vehicle)
         if self.sensor == ENCODERS:
             raise ConfigError(
                 f"fault {self.fault!r}: the loop cannot go on without joint states; the encoders"
                 " can have latency, zeros, stuck, bias, noise, outliers or scale"
             )
+        super().check(vehicle)
 
 
 class LatencyFault(_Delivery):
