@@ -229,6 +229,7 @@ def test_events_at_run_time_are_those_of_a_scenario():
         ("{sensor: imu, fault: bias, bias: 1}", "field: the imu measures quaternion, angular"),
         ("{sensor: imu, fault: silent}", "at_s 0: navigation takes its attitude"),
         ("{sensor: encoders, fault: silent}", "cannot go on without joint states"),
+        ("{sensor: encoders, fault: latency, latency_s: 0.1}", "at_s 0: .* first joint states"),
         ("{sensor: dvl, fault: bias, bias: [1, 2]}", "has 2 numbers; dvl needs 1 or 3"),
         (
             "{sensor: dvl, fault: noise, std: -1}",

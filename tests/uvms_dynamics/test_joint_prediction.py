@@ -57,10 +57,45 @@ def test_a_constant_acceleration_is_carried_exactly():
     assert carried.max() < 1e-5
 
 
-@pytest.mark.parametrize("age", [0.05, 0.1, 0.2])
-def test_of_a_swing_a_small_part_of_the_error_is_left(age):
+@pytest.mark.parametrize(("age", "share"), [(0.05, 0.25), (0.1, 0.25), (0.2, 0.65)])
+def test_of_a_swing_a_part_of_the_error_is_left(age, share):
+    """Of the angle little, of the rate the more the slower the acceleration is followed."""
     held, carried = late(swing, age)
-    assert (carried < 0.25 * held).all()
+    assert (carried < np.array([0.1, share]) * held).all()
+
+
+def shaken(frequency):
+    """All joints to and fro with an acceleration of 1 rad/s^2."""
+    one = np.ones(4)
+    return lambda t: np.array(
+        [
+            -np.sin(frequency * t) / frequency**2 * one,
+            -np.cos(frequency * t) / frequency * one,
+            np.sin(frequency * t) * one,
+        ]
+    )
+
+
+def followed(frequency, age):
+    """Amplitude of the acceleration that the filter finds of 1 rad/s^2, in the steady state."""
+    predict, motion = JointPrediction(VEHICLE), shaken(frequency)
+    times = np.arange(age, 20.0, PERIOD)
+    found = np.array(
+        [predict.step(sample(t - age, motion), to_nanoseconds(t)).q_ddot[0] for t in times]
+    )[len(times) // 2 :]
+    turns = np.exp(1j * frequency * times[len(times) // 2 :])
+    return 2.0 * abs(np.mean(found * turns))
+
+
+@pytest.mark.parametrize("age", [0.05, 0.1, 0.2])
+def test_the_acceleration_of_late_samples_is_followed_up_to_a_third_of_the_inverse_of_their_age(
+    age,
+):
+    bandwidth = 1.0 / (3.0 * age)
+    assert followed(0.3 * bandwidth, age) == pytest.approx(1.0, abs=0.2)
+    assert 0.4 < followed(bandwidth, age) < 1.3
+    assert followed(5.0 * bandwidth, age) < 0.35
+    assert followed(5.0 * bandwidth, 0.0) > 0.7  # on time it is
 
 
 def test_a_sample_that_came_before_is_carried_further():

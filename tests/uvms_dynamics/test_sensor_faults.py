@@ -161,6 +161,26 @@ def test_encoders_can_be_wrong_too(whole):
         )
 
 
+def test_late_joint_states_come_at_the_tick_at_or_after_their_latency(whole):
+    frames = frames_of(fault("encoders", "fault: latency, latency_s: 0.12"))
+    came = [(k * PERIOD, each) for k, frame in enumerate(frames) for each in frame.joint_samples]
+    assert [each.stamp for _, each in came] == [k * PERIOD for k in range(TICKS + 1)]
+    last = round(1e9 * END) + 2 * PERIOD  # when the last of the late ones comes
+    for (tick, mine), other in zip(came, whole, strict=True):
+        np.testing.assert_array_equal(mine.position, other.joints.position)
+        if 1e-9 * mine.stamp >= END:
+            assert tick == max(mine.stamp, last)
+        else:
+            assert tick == mine.stamp + 3 * PERIOD * is_covered(mine.stamp)
+    for k, frame in enumerate(frames):
+        known = [each for tick, each in came if tick <= k * PERIOD]
+        assert frame.joints is known[-1]
+        gaps = frame.gaps
+        told = {} if gaps is None else dict(zip(gaps.sensors, gaps.newest, strict=True))
+        is_whole = [each.stamp for each in frame.joint_samples] == [k * PERIOD]
+        assert told.get("encoders") == (None if is_whole else known[-1].stamp)
+
+
 def test_faults_are_the_same_for_the_same_seed_and_differ_for_another():
     text = fault("dvl", "fault: noise, std: 0.1")
     first, again = (samples_of(frames_of(text, ticks=60), "dvl") for _ in range(2))

@@ -96,6 +96,10 @@ class Acknowledgement:
             message_class(topics.RECORDED), topics.RECORDED.name, qos_profile(topics.RECORDED.qos)
         )
         recorder.receivers[topics.APPLIED_THRUST.name] = self._take_applied
+        self._late: dict[str, int] = {}  # newest stamp that was sent, by topic
+        self._gaps = codec(topics.SENSOR_GAPS.type)
+        self._also_gaps = recorder.receivers.get(topics.SENSOR_GAPS.name, lambda data: None)
+        recorder.receivers[topics.SENSOR_GAPS.name] = self._take_gaps
         recorder.on_message = self._look
 
     def _take_applied(self, data: bytes) -> None:
@@ -104,6 +108,13 @@ class Acknowledgement:
             message = self._applied.decode(data)
             self._answered = not (message.thruster_safe or message.joint_safe)
             self._pending = stamp
+
+    def _take_gaps(self, data: bytes) -> None:
+        """Samples that are late or missing are not waited for."""
+        message = self._gaps.decode(data)
+        for sensor, newest in zip(message.sensors, message.newest, strict=True):
+            self._late[topics.sampled_topic(sensor)] = newest
+        self._also_gaps(data)
 
     def _look(self) -> None:
         stamp = self._pending
@@ -143,13 +154,19 @@ class Acknowledgement:
 
     def _complete(self, stamp: int) -> bool:
         newest, before = self._newest, stamp - self._period
-        return all(newest.get(name, -1) >= stamp for name in self._plants) and (
+        return all(newest.get(name, -1) >= self._due_of(name, stamp) for name in self._plants) and (
             not self._answered or all(newest.get(name, -1) >= before for name in self._answers)
         )
 
+    def _due_of(self, name: str, stamp: int) -> int:
+        """The stamp up to which a topic of the plant has to be recorded."""
+        return min(stamp, self._late.get(name, stamp)) if self._late else stamp
+
     def _lacking(self, stamp: int) -> set[str]:
         newest = self._newest
-        lacking = {name for name in self._plants if newest.get(name, -1) < stamp}
+        lacking = {
+            name for name in self._plants if newest.get(name, -1) < self._due_of(name, stamp)
+        }
         if self._answered:
             before = stamp - self._period
             lacking |= {name for name in self._answers if newest.get(name, -1) < before}

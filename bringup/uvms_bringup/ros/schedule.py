@@ -40,7 +40,9 @@ class TickOf:
 
 def with_gaps(run: RunLog, own: topics.NodeTopics) -> topics.NodeTopics:
     """The node's topics, with what the plant said of missing samples if it reads sensors."""
-    reads_sensors = any(topic.name.startswith(SENSORS) for topic in own.inputs)
+    reads_sensors = any(
+        topic is topics.JOINT_STATES or topic.name.startswith(SENSORS) for topic in own.inputs
+    )
     if not reads_sensors or not run.has(topics.SENSOR_GAPS):
         return own
     return replace(own, inputs=(*own.inputs, topics.SENSOR_GAPS))
@@ -54,7 +56,9 @@ class Arrivals:
         gaps = run.signals(topics.SENSOR_GAPS) if run.has(topics.SENSOR_GAPS) else []
         for each in gaps:
             for sensor, newest in zip(each.sensors, each.newest, strict=True):
-                name = sensor_type(sensor).topic.resolve(run.namespace)
+                encoders = sensor == topics.ENCODERS
+                topic = topics.JOINT_STATES if encoders else sensor_type(sensor).topic
+                name = topic.resolve(run.namespace)
                 self._told.setdefault(name, {})[each.stamp] = newest
 
     def __call__(self, name: str, stamp: int, tick: int) -> int:

@@ -10,7 +10,7 @@ from rclpy.node import Node
 from rclpy.publisher import Publisher
 
 from uvms_core import topics
-from uvms_core.cdr import codec
+from uvms_core.cdr import Codec, codec
 from uvms_core.description import StateFrames, description_message, static_message
 from uvms_core.errors import UvmsError
 from uvms_core.messages import from_message
@@ -18,7 +18,7 @@ from uvms_core.ros.convert import message_class
 from uvms_core.ros.main import main_of
 from uvms_core.ros.node import NodeConfig, qos_profile
 from uvms_core.ros.parameters import declare_config
-from uvms_core.tick_gate import Same, Tick, TickGate
+from uvms_core.tick_gate import Delayed, Same, Tick, TickGate
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle, load_vehicle
 
@@ -31,16 +31,17 @@ class StateBroadcaster:
 
     Args:
         node: whose publishers these are.
-        lockstep: wait for the joint states of the odometry's own stamp; else take the newest.
+        lockstep: wait for the joint states of the odometry's own stamp, or for those that have
+            come by it where the plant says that they are late; else take the newest.
     """
 
     def __init__(self, node: Node, vehicle: Vehicle, lockstep: bool) -> None:
         self._logger = node.get_logger()
         self._frames = StateFrames(vehicle)
-        self._gate = TickGate(
-            {topic.name: Same() for topic in SOURCES}, topics.ODOMETRY.name, lockstep, in_loop=False
-        )
+        inputs = {topics.ODOMETRY.name: Same(), topics.JOINT_STATES.name: Delayed()}
+        self._gate = TickGate(inputs, topics.ODOMETRY.name, lockstep, in_loop=False)
         self.receivers = {topic.name: self._receiver(topic, vehicle) for topic in SOURCES}
+        self.receivers[topics.SENSOR_GAPS.name] = self._take_gaps(codec(topics.SENSOR_GAPS.type))
         self._wire = codec(topics.TF.type)
         self._moving = _publisher(node, topics.TF)
         self._fixed = [
@@ -63,6 +64,19 @@ class StateBroadcaster:
 
         return receive
 
+    def _take_gaps(self, wire: Codec) -> Callable[[bytes], None]:
+        """Callback for what the plant says is late."""
+
+        def receive(data: bytes) -> None:
+            gaps = from_message(topics.SENSOR_GAPS, wire.decode(data), ())
+            late = dict(zip(gaps.sensors, gaps.newest, strict=True))
+            if topics.ENCODERS in late:
+                newest = {topics.JOINT_STATES.name: late[topics.ENCODERS]}
+                for tick in self._gate.skip(gaps.stamp, newest):
+                    self._publish(tick)
+
+        return receive
+
     def _publish(self, tick: Tick) -> None:
         odometry, joints = (tick[topic.name] for topic in SOURCES)
         self._moving.publish(self._wire.encode(self._frames.message(odometry, joints)))
@@ -76,7 +90,7 @@ class StatePublisherNode(Node):
         config = declare_config(self, NodeConfig)
         vehicle = load_vehicle(config.vehicle_file or None)
         states = StateBroadcaster(self, vehicle, config.pace == "lockstep")
-        for topic in SOURCES:
+        for topic in (*SOURCES, topics.SENSOR_GAPS):
             receive, qos = states.receivers[topic.name], qos_profile(topic.qos)
             self.create_subscription(message_class(topic), topic.name, receive, qos, raw=True)
 

@@ -12,7 +12,7 @@ from uvms_core.diagnostics import Trouble
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench, to_seconds
-from uvms_core.tick_gate import Covering, Previous, Same, Tick
+from uvms_core.tick_gate import Covering, Delayed, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 
 
@@ -28,7 +28,7 @@ class ControllerPart(Part):
         self.law = self._make_law()
         self.inputs = {
             topics.ODOMETRY: Same(),
-            topics.JOINT_STATES: Same(),
+            topics.JOINT_STATES: Delayed(),
             topics.DISTURBANCE: Same(),
             topics.DISTURBANCE_BUDGET: Same(),
             topics.REFERENCE: Covering(),

@@ -14,7 +14,7 @@ from typing import Any, NamedTuple, TypeVar, get_type_hints
 
 import numpy as np
 
-from uvms_core.errors import SignalError
+from uvms_core.errors import SignalError, StaleError
 from uvms_core.signals import Array, OnlyIf, Shape, to_nanoseconds
 
 QUATERNION_TOLERANCE = 1e-3
@@ -133,10 +133,12 @@ def age(name: str, stamp: int, now: int, limit_s: float = MAX_AGE_S) -> None:
     """Check that an input of `stamp` can be used at `now` (both ns).
 
     Raises:
-        SignalError: it is later than now, or older than `limit_s`.
+        StaleError: it is older than `limit_s`.
+        SignalError: it is later than now.
     """
     if not 0 <= now - stamp <= to_nanoseconds(limit_s):
-        raise SignalError(
+        error = StaleError if stamp < now else SignalError
+        raise error(
             f"{name}: stamp {stamp} ns; it must lie within {limit_s:g} s before the odometry's,"
             f" {now} ns"
         )

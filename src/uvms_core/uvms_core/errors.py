@@ -21,6 +21,10 @@ class SignalError(UvmsError):
     """A signal has a wrong shape, frame or stamp, or a value that is not finite."""
 
 
+class StaleError(SignalError):
+    """A signal is too old to be used at this tick; a newer one may be used again."""
+
+
 class ImplausibleError(SignalError):
     """A signal has a value, or a jump from the one before, that this vehicle cannot have."""
 

@@ -115,6 +115,62 @@ class Same(Input):
         return value
 
 
+class Delayed(Same):
+    """As `Same`, of what may come late: then the newest that has come, with its own stamp.
+
+    In lockstep only the plant knows what will not come in time, and says so (`skip`); without a
+    word from it the value of the stamp is waited for.
+    """
+
+    def __init__(self) -> None:
+        super().__init__()
+        self._begin()
+
+    def _begin(self) -> None:
+        self._newest = -1
+        self._gaps: dict[int, int] = {}
+
+    def reset(self) -> None:
+        """Forget everything: time starts over."""
+        super().reset()
+        self._begin()
+
+    def push(self, stamp: int, value: Any) -> bool:
+        """Store a value, as any input does."""
+        self._newest = max(self._newest, stamp)
+        return super().push(stamp, value)
+
+    def excuse(self, stamp: int) -> None:
+        """The value of this stamp came but cannot be used."""
+        self._newest = max(self._newest, stamp)
+        super().excuse(stamp)
+
+    def skip(self, stamp: int, newest: int) -> None:
+        """At the tick of this stamp its value does not come; `newest` is what has come by it."""
+        self._gaps[stamp] = newest
+
+    def complete(self, stamp: int) -> bool:
+        """Whether the value of this stamp has arrived, or all that comes by it."""
+        if self._gaps and stamp in self._gaps:
+            return self._gaps[stamp] <= self._newest
+        return super().complete(stamp)
+
+    def missing(self, stamp: int) -> bool:
+        """Whether there is no value at all, or an excused one has none to stand in."""
+        if stamp in self._gaps:
+            return self.newest(self._gaps[stamp]) is None
+        return super().missing(stamp)
+
+    def take(self, stamp: int) -> Any:
+        """The value for the tick: nothing that came after it, though its stamp may be before."""
+        if not self._gaps:  # the usual case, which is quick
+            return super().take(stamp)
+        newest = self._gaps.get(stamp)
+        value = super().take(stamp) if newest is None else super().take(min(newest, stamp))
+        self._gaps = {at: last for at, last in self._gaps.items() if at > stamp}
+        return value
+
+
 class Previous(Input):
     """Feedback from the previous tick, `period` nanoseconds ago."""
 
@@ -169,6 +225,7 @@ class Periodic(Input):
 
     def excuse(self, stamp: int) -> None:
         """The sample of this stamp came but cannot be used: the tick does without."""
+        self._newest = max(self._newest, stamp)
         self._taken = max(self._taken, stamp)
 
     def complete(self, stamp: int) -> bool:

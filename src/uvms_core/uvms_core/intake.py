@@ -12,8 +12,8 @@ from uvms_core.errors import ImplausibleError, StampError, UvmsError
 from uvms_core.plausibility import Plausibility
 from uvms_core.tick_gate import KEEP, Tick, TickGate
 from uvms_core.timeline import Item, Judged, Jump, Timeline
-from uvms_core.topic import SENSORS, Topic
-from uvms_core.topics import SENSOR_GAPS
+from uvms_core.topic import Topic
+from uvms_core.topics import SENSOR_GAPS, sampled_topic
 
 UNREADABLE, IMPLAUSIBLE, JUMPS, RESETS = "unreadable", "implausible", "jumps_taken", "resets"
 
@@ -85,7 +85,7 @@ class Intake:
     def _hand_over(self, item: Item) -> list[Tick]:
         if item.name == SENSOR_GAPS.name:
             gaps = item.content
-            newest = (f"{SENSORS}{name}" for name in gaps.sensors)
+            newest = map(sampled_topic, gaps.sensors)
             return self.gate.skip(gaps.stamp, dict(zip(newest, gaps.newest, strict=True)))
         try:
             news = self._plausibility.admit(self._topics[item.name], item.content)

@@ -16,7 +16,14 @@ import numpy as np
 
 from uvms_core import topics
 from uvms_core.diagnostics import ERROR, OK, Status, Trouble
-from uvms_core.errors import PlantDiverged, PluginError, SignalError, UnsafeOutputError, UvmsError
+from uvms_core.errors import (
+    PlantDiverged,
+    PluginError,
+    SignalError,
+    StaleError,
+    UnsafeOutputError,
+    UvmsError,
+)
 from uvms_core.plausibility import Plausibility
 from uvms_core.signals import to_seconds
 from uvms_core.tick_gate import Input, Previous, Tick
@@ -232,7 +239,7 @@ class InProcess:
         if isinstance(fault, UnsafeOutputError):
             self._counts[role]["unsafe_outputs"] += 1
             self._faults.append(str(fault))
-        elif fault is not None and tick.missing:
+        elif fault is not None and (tick.missing or isinstance(fault, StaleError)):
             self._faults.append(str(fault))
         elif fault is not None:
             raise fault

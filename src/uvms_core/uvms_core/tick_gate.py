@@ -12,9 +12,20 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from uvms_core.inputs import KEEP, Covering, Input, Periodic, Previous, Same, held
+from uvms_core.inputs import KEEP, Covering, Delayed, Input, Periodic, Previous, Same, held
 
-__all__ = ["KEEP", "Covering", "Input", "Periodic", "Previous", "Same", "Tick", "TickGate", "held"]
+__all__ = [
+    "KEEP",
+    "Covering",
+    "Delayed",
+    "Input",
+    "Periodic",
+    "Previous",
+    "Same",
+    "Tick",
+    "TickGate",
+    "held",
+]
 
 
 @dataclass(frozen=True)
@@ -89,7 +100,7 @@ class TickGate:
         return [] if is_late and not self._open else self._release()
 
     def skip(self, stamp: int, newest: Mapping[str, int]) -> list[Tick]:
-        """At a stamp some periodic inputs are not what is due; returns the ticks that go on.
+        """At a stamp some samples are not what is due; returns the ticks that go on.
 
         Args:
             stamp: of the tick, ns.
@@ -102,6 +113,9 @@ class TickGate:
             item = self._inputs.get(name)
             if isinstance(item, Periodic):
                 item.skip(stamp, last)
+            elif isinstance(item, Delayed) and self._lockstep:  # else the newest is taken anyway
+                item.skip(stamp, last)
+                self._excuses = True
         if self._trigger in newest and newest[self._trigger] < stamp and stamp % self._every == 0:
             self._is_new(stamp)
         return self._release()

@@ -33,6 +33,7 @@ __all__ = [
     "BY_NAME",
     "CONTROLLER",
     "DISTURBANCE_OBSERVER",
+    "ENCODERS",
     "LATCHED",
     "MOTION_PLANNER",
     "NAVIGATION",
@@ -52,6 +53,7 @@ __all__ = [
     "nodes",
     "of",
     "readers",
+    "sampled_topic",
 ]
 
 PLANT = "plant"
@@ -132,6 +134,13 @@ SENSOR_GAPS = Topic(
 """Of the plant: samples that are missing or late. Nobody needs it who has a real vehicle."""
 RECORDED = Topic("recorded", "rosgraph_msgs/msg/Clock", int)
 """Of the run, not of the loop: up to here everything is in the log. The plant waits for it."""
+ENCODERS = "encoders"
+"""The joint encoders, which are no sensor of the body; their samples are the joint states."""
+
+
+def sampled_topic(sensor: str) -> str:
+    """Name of the topic with the samples of a sensor of the vehicle file."""
+    return JOINT_STATES.name if sensor == ENCODERS else f"{SENSORS}{sensor}"
 
 
 def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:

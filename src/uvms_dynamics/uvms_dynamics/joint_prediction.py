@@ -9,6 +9,10 @@ to the tick with the joints' acceleration, which a tracking filter finds at the 
 At d = 0 that is the measurement itself. What is left is the change of the acceleration, of the
 order of jerk d^2 / 2 in the rate. The error of q_ddot counts d times in the rate, so that a
 prediction is worth less the older the state is; `joint_age_limit` says where it ends.
+
+What is fed forward of q_ddot accelerates the hull, and that the joints again. On time the loop is
+closed before it can swing; late by d it would do so at about 1/d, if the filter followed that fast.
+So its bandwidth is at most `RADIANS_OF_AGE` / d.
 """
 
 from typing import NamedTuple
@@ -18,11 +22,16 @@ import numpy as np
 from uvms_core import checks
 from uvms_core.signals import Array, JointStates, to_seconds
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics.tracking import TrackingFilter
+from uvms_dynamics.tracking import VARIANCE_FLOOR, TrackingFilter
 
 JOINT_JERK_RAD_S3 = 0.05
 """How much a joint's acceleration changes within a second: that of a swing by 90 degrees in 10 s
 has a jerk of up to 0.09 rad/s^3, that of a manipulation is below."""
+
+RADIANS_OF_AGE = 1.0 / 3.0
+"""Bandwidth of the acceleration times the age of the samples: it is carried to the tick unchanged,
+and what changes faster would come with the wrong phase. As of every loop here, a third of the
+inverse of the delay."""
 
 
 class JointMotion(NamedTuple):
@@ -51,6 +60,8 @@ class JointPrediction:
     ) -> None:
         self._vehicle = vehicle
         self._filter = TrackingFilter(3, jerk_rad_s3)
+        self._jerk = jerk_rad_s3
+        self._age = 0.0  # of the last sample when it came, s
         self._variances = encoder_variances(vehicle)
         self._limit = age_limit_s
         self._stamp: int | None = None  # of the last sample
@@ -79,6 +90,7 @@ class JointPrediction:
         if self._stamp is None or joints.stamp > self._stamp:
             dt = 0.0 if self._stamp is None else to_seconds(joints.stamp - self._stamp)
             measured = np.array((joints.position, joints.velocity))
+            self._suit(to_seconds(tick - joints.stamp), dt)
             self.filtered = self._filter.step(dt, measured, self._variances)
             self._stamp = joints.stamp
         self._tick = tick
@@ -88,6 +100,31 @@ class JointPrediction:
         age = to_seconds(tick - joints.stamp)
         q_dot = joints.velocity + age * q_ddot
         return JointMotion(joints.position + 0.5 * age * (joints.velocity + q_dot), q_dot, q_ddot)
+
+    def _suit(self, age: float, dt: float) -> None:
+        """Let the filter be as fast as samples of this age, s, allow; dt s is their interval."""
+        if age == self._age or dt <= 0.0:
+            return
+        self._age, self._filter.jerk = age, self._jerk
+        if age > 0.0:
+            slowest = jerk_for(RADIANS_OF_AGE / age, self._variances, dt)
+            self._filter.jerk = min(self._jerk, slowest)
+
+
+def jerk_for(bandwidth: float, variances: Array, interval_s: float) -> float:
+    """Jerk J, rad/s^3 within one second, that gives the filter of the joints this bandwidth, rad/s.
+
+    With sigma sqrt(T) the density of the noise, the acceleration has the bandwidth
+    (J / (sigma sqrt(T)))^(1/3) where the filter reads the angle, and the same to the power of 1/2
+    where it reads the rate (continuous-time solution of the Riccati equation); the faster counts.
+
+    Args:
+        bandwidth: of the acceleration.
+        variances: (2,) of angle and rate.
+        interval_s: T, between two samples.
+    """
+    angle, rate = np.sqrt(np.maximum(variances, VARIANCE_FLOOR) * interval_s)
+    return float(min(bandwidth**3 * angle, bandwidth**2 * rate))
 
 
 def loop_delay(vehicle: Vehicle, period_s: float) -> float:

@@ -39,6 +39,17 @@ class TrackingFilter:
         self._Q = np.zeros((order, order))
 
     @property
+    def jerk(self) -> float:
+        """J; it may be changed between two steps."""
+        return float(np.sqrt(self._density))
+
+    @jerk.setter
+    def jerk(self, jerk: float) -> None:
+        self._density = jerk**2
+        if self._dt > 0.0:
+            self._Q = self._density * walk(self._order, self._dt)
+
+    @property
     def covariance(self) -> Array:
         """Of the error of value and derivatives, (k, k), the same for every channel."""
         return self._P

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from uvms_core import topics
 from uvms_core.part import Output, Part
 from uvms_core.signals import JointStates, Odometry, to_nanoseconds
-from uvms_core.tick_gate import Previous, Same, Tick, held
+from uvms_core.tick_gate import Delayed, Previous, Same, Tick, held
 from uvms_core.vehicle import Vehicle
 from uvms_planner.config import PlannerConfig
 from uvms_planner.planner import MotionPlanner
@@ -28,7 +28,7 @@ class PlannerPart(Part):
         self.every = to_nanoseconds(config.step_s)
         self.inputs = {
             topics.ODOMETRY: Same(),
-            topics.JOINT_STATES: Same(),
+            topics.JOINT_STATES: Delayed(),
             topics.DISTURBANCE_BUDGET: Previous(period),
             topics.ALLOCATION: Previous(period),
         }

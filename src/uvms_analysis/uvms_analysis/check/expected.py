@@ -70,6 +70,8 @@ def _with_gaps(log: RunLog) -> Iterator[Topic]:
     for sensor in sensor_types(log.vehicle):
         if sensor.name in names:
             yield sensor.topic
+    if topics.ENCODERS in names:
+        yield topics.JOINT_STATES
 
 
 def _period(config: Mapping[str, Any], path: str) -> int:

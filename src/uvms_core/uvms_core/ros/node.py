@@ -26,7 +26,7 @@ from uvms_core.ros.parameters import declare_config
 from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
 from uvms_core.ros.watchdog import LOOK_S, Watchdog
 from uvms_core.signals import BY_THRUSTER, NANOSECONDS, to_nanoseconds
-from uvms_core.tick_gate import Covering, Input, Periodic, Tick, TickGate
+from uvms_core.tick_gate import Covering, Delayed, Input, Periodic, Tick, TickGate
 from uvms_core.timeline import Jump, Timeline
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
 from uvms_core.topics import Qos, Topic
@@ -132,7 +132,7 @@ class UvmsNode(Node):
         timeline = Timeline(self.period, plans)
         self._intake = Intake(gate, timeline, self.plausibility, self.on_time_jump)
         self._on_tick = on_tick
-        waits = any(isinstance(rule, Periodic) for rule in inputs.values())
+        waits = any(isinstance(rule, Delayed | Periodic) for rule in inputs.values())
         for topic in (*inputs, topics.SENSOR_GAPS) if waits else inputs:
             self._subscribe(topic, partial(self._receive, self._intake, topic))
 

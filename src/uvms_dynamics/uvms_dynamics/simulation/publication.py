@@ -24,7 +24,8 @@ def plant_outputs(
     yield topics.TRUE_ODOMETRY, truth.odometry
     yield topics.TRUE_JOINT_STATES, truth.joints
     yield topics.TRUE_DISTURBANCE, truth.disturbance
-    yield topics.JOINT_STATES, sensors.joints
+    for joints in sensors.joint_samples:
+        yield topics.JOINT_STATES, joints
     if sensors.gaps is not None:
         yield topics.SENSOR_GAPS, sensors.gaps
     for name, topic in sensor_topics:

@@ -7,10 +7,9 @@ from typing import Any, get_type_hints
 from uvms_core.errors import ConfigError
 from uvms_core.sensors import sensor_type
 from uvms_core.signals import JointStates, OnlyIf, Shape
+from uvms_core.topics import ENCODERS
 from uvms_core.vehicle import Vehicle
 
-ENCODERS = "encoders"
-"""The joint encoders, which are no sensor of the body; their samples are the joint states."""
 ROTATION = 3
 """Numbers of an error of an attitude: a rotation vector about the body axes, rad."""
 _UNCERTAINTY = ("covariance", "variance")

@@ -12,10 +12,10 @@ from pydantic import AfterValidator, BeforeValidator, Field
 from uvms_core.errors import ConfigError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import to_nanoseconds, to_seconds
+from uvms_core.topics import ENCODERS
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation.events.event import Effects, LastingEvent, check_name
 from uvms_dynamics.simulation.events.measured import (
-    ENCODERS,
     check_quantity,
     is_attitude,
     quantities,
@@ -85,15 +85,15 @@ class SensorEvent(LastingEvent):
 
 
 class _Delivery(SensorEvent):
-    """A fault of the delivery: the loop waits for encoders, and navigation starts from the IMU."""
+    """A fault of the delivery: navigation and the arm's loop start from the first samples."""
 
     def check(self, vehicle: Vehicle) -> None:
         """Whether the loop can do without the sensor."""
         super().check(vehicle)
-        if self.sensor == ENCODERS:
+        if self.sensor == ENCODERS and self.at_s == 0.0:
             raise ConfigError(
-                f"fault {self.fault!r}: the loop cannot go on without joint states; the encoders"
-                " can have zeros, stuck, bias, noise, outliers or scale"
+                "at_s 0: the loop starts from the first joint states; let the fault of the"
+                " encoders begin later"
             )
         if self.sensor == INERTIAL.name and self.at_s == 0.0:
             raise ConfigError(
@@ -152,6 +152,15 @@ class SilentFault(_Delivery):
     """Nothing comes from the sensor."""
 
     fault: Literal["silent"] = KIND
+
+    def check(self, vehicle: Vehicle) -> None:
+        """Whether the loop can do without the sensor."""
+        if self.sensor == ENCODERS:
+            raise ConfigError(
+                f"fault {self.fault!r}: the loop cannot go on without joint states; the encoders"
+                " can have latency, zeros, stuck, bias, noise, outliers or scale"
+            )
+        super().check(vehicle)
 
 
 class LatencyFault(_Delivery):

@@ -18,8 +18,8 @@ from uvms_core.signals import (
     to_nanoseconds,
 )
 from uvms_core.topic import Topic
+from uvms_core.topics import ENCODERS
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics.simulation.events.measured import ENCODERS
 from uvms_dynamics.simulation.events.sensor import SensorEvent
 from uvms_dynamics.simulation.sensors.delivery import Delivery
 from uvms_dynamics.simulation.sensors.encoders import EncoderSensor
@@ -30,10 +30,17 @@ from uvms_dynamics.simulation.sensors.mounting import Trajectory
 
 @dataclass(frozen=True)
 class SensorFrame:
-    """All samples since the last control tick, this one's included: by sensor, and the joints."""
+    """What has come since the last control tick, at this one included: by sensor, and the joints.
+
+    Attributes:
+        joints: the newest joint states that have come by now.
+        joint_samples: those that have come since the last tick: none or several where they are
+            late, else one.
+    """
 
     samples: Mapping[str, tuple[Any, ...]]
     joints: JointStates
+    joint_samples: tuple[JointStates, ...]
     gaps: SensorGaps | None = None
     """Which sensors did not give what was due, where there are any."""
 
@@ -83,6 +90,7 @@ class SensorSuite:
         self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
         self._seed = seed
         self._lines: dict[str, FaultLine] = {}  # of the sensors with faults
+        self._joints: JointStates  # the newest that have come
         self._now = -1
         self._newest: dict[str, int] = {}
 
@@ -97,10 +105,17 @@ class SensorSuite:
             name: self._deliver(name, checks.trust_all(model.sample(trajectory)))
             for name, model in self._models.items()
         }
-        joints = checks.trust(self._encoders.sample(self._now, q, q_dot, effort))
+        joints = self._deliver_joints(self._encoders.sample(self._now, q, q_dot, effort))
+        return SensorFrame(samples, self._joints, joints, self._gaps(samples, joints, before))
+
+    def _deliver_joints(self, sample: JointStates) -> tuple[JointStates, ...]:
+        """What comes now of the joint states."""
+        samples: tuple[JointStates, ...] = (checks.trust(sample),)
         if ENCODERS in self._lines:
-            (joints,) = self._lines[ENCODERS].pass_on(((self._now, joints),), self._now)
-        return SensorFrame(samples, joints, self._gaps(samples, before))
+            samples = self._lines[ENCODERS].pass_on(((self._now, sample),), self._now)
+        if samples:
+            self._joints = samples[-1]
+        return samples
 
     def _deliver(self, name: str, samples: tuple[Any, ...]) -> tuple[Any, ...]:
         """What comes now of what a sensor has measured, with the faults that events give it."""
@@ -109,7 +124,12 @@ class SensorSuite:
             return delivery.deliver(samples, self._now)
         return line.pass_on(delivery.arrivals(samples, self._now), self._now)
 
-    def _gaps(self, samples: Mapping[str, tuple[Any, ...]], before: int) -> SensorGaps | None:
+    def _gaps(
+        self,
+        samples: Mapping[str, tuple[Any, ...]],
+        joints: tuple[JointStates, ...],
+        before: int,
+    ) -> SensorGaps | None:
         """What is missing or late of the samples since the stamp before."""
         now, wrong = self._now, []
         for name, model in self._models.items():
@@ -119,6 +139,9 @@ class SensorSuite:
                 self._newest[name] = came[-1].stamp
             if len(came) != due or (came and came[-1].stamp != now - now % period):
                 wrong.append(name)
+        self._newest[ENCODERS] = self._joints.stamp
+        if len(joints) != 1 or joints[0].stamp != now:
+            wrong.append(ENCODERS)
         if not wrong:
             return None
         newest = tuple(self._newest.get(name, NOTHING_YET) for name in wrong)
