@@ -30,6 +30,7 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import build_model, hull_bias_wrench, mass_matrix
+from uvms_dynamics.payload import LoadedModel
 
 
 class Controller:
@@ -47,14 +48,14 @@ class Controller:
         self._config = config
         self._vehicle = vehicle
         self._joint_names = vehicle.joint_names
-        self._model = build_model(vehicle)
+        self._loaded = LoadedModel(build_model(vehicle))
         self._law = VehicleLaw()
         self._axes = axes_of(vehicle)
         self._effectiveness = np.empty(0)
         self._gains: VehicleGains | None = None
         self._monitor: StabilityMonitor | None = None
         self._lead = 0
-        self.arm = ArmLaw(vehicle, self._model, config)
+        self.arm = ArmLaw(vehicle, self._loaded, config)
         self._budget: DisturbanceBudget | None = None
         self.reset()
 
@@ -77,12 +78,12 @@ class Controller:
         self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
         self._law.reset()
+        self._loaded.take(None)
         self.arm.reset()
 
     def inform(self, budget: DisturbanceBudget, allocation: Allocation | None) -> None:
         """What explains the disturbance, and what the thrusters gave a tick ago."""
         self._budget = budget
-        self.arm.inform(budget)
         self._lacking = np.zeros(6) if allocation is None else allocation.residual
         if allocation is not None and not np.array_equal(
             allocation.effectiveness, self._effectiveness
@@ -106,7 +107,9 @@ class Controller:
         dt = self._elapsed(odometry.stamp)
         desired = sample_reference(reference, odometry.stamp)
         q, _ = self.arm.observe(joints, odometry.stamp)
-        mass = mass_matrix(self._model, q)
+        if self._budget is not None:
+            self.arm.take(self._budget.payload, odometry)
+        mass = mass_matrix(self._loaded.model, q)
         nu_dot, wrench = np.zeros(6), np.zeros(6)
         if self._config.enabled:
             inertia = np.ascontiguousarray(mass[:6, :6])
@@ -135,7 +138,8 @@ class Controller:
         """
         if self._monitor is None:
             return None
-        needed = mass @ tracking.acceleration + hull_bias_wrench(self._model, odometry.nu) - acts
+        bias = hull_bias_wrench(self._loaded.model, odometry.nu)
+        needed = mass @ tracking.acceleration + bias - acts
         given = wrench - self._lacking
         return self._monitor.at(odometry.stamp, tracking.error, tracking.rate, mass, needed, given)
 
@@ -158,7 +162,7 @@ class Controller:
             return tracking, -known
         if known.any():
             known = at_reference(
-                self._model,
+                self._loaded.model,
                 known,
                 self._budget,
                 odometry,
@@ -168,7 +172,7 @@ class Controller:
                 joints_ahead(q, desired, ahead),
             )
         wrench = self._law.step(
-            self._model, self._axes, self._gains, odometry, mass, tracking, known, dt
+            self._loaded.model, self._axes, self._gains, odometry, mass, tracking, known, dt
         )
         return tracking, wrench
 

@@ -30,7 +30,7 @@ class PaperController(Controller):
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         super().__init__(vehicle, config)
-        self.vehicle = VehicleController(self._model, config.vehicle)
+        self.vehicle = VehicleController(self._loaded.model, config.vehicle)
 
     def prepare(self, period: float) -> None:
         """Check the slopes near the reference for a control period in s, with the arm stowed.

@@ -71,8 +71,9 @@ class VehicleLaw:
             model,
             axes.is_controlled,
             axes.passing,
-            share * gains.stiffness,
-            share * gains.damping,
+            share,
+            gains.stiffness,
+            gains.damping,
             gains.amplitude(axes.authority, mass),
             odometry.nu,
             mass,
@@ -88,6 +89,7 @@ def law_wrench(
     model: Model,
     is_controlled: Flags,
     passing: Array,
+    share: Array,
     stiffness: Array,
     damping: Array,
     amplitude: Array,
@@ -98,12 +100,16 @@ def law_wrench(
     reference_acceleration: Array,
     known: Array,
 ) -> Array:
-    """The law of the module; all arrays (6,), but `passing` and `mass` (6, 6)."""
+    """The law of the module; all arrays (6,), but `passing` and `mass` (6, 6).
+
+    `share` of the feedback, and not of its gains: of a large error a small share of the gains
+    would ask for the whole amplitude as well.
+    """
     acceleration = np.zeros(6)
     for i in range(6):
         if is_controlled[i]:
             feedback = _feedback(error[i], rate[i], stiffness[i], damping[i], amplitude[i])
-            acceleration[i] = reference_acceleration[i] + feedback
+            acceleration[i] = reference_acceleration[i] + share[i] * feedback
     wrench = mass @ acceleration + hull_bias_wrench(model, nu + rate) - known
     return passing @ wrench
 
