@@ -14,7 +14,7 @@ from trajectories import vehicle as vehicle_motion
 from uvms_control import ControlConfig, Controller, PaperController
 from uvms_control.design.gains import VehicleGains
 from uvms_control.vehicle_law import BRAKING, _feedback, law_wrench, return_speed
-from uvms_core.signals import DisturbanceBudget, Wrench, to_nanoseconds
+from uvms_core.signals import DisturbanceBudget, Payload, Wrench, to_nanoseconds
 from uvms_core.vehicle import load_vehicle
 from uvms_core.vehicle.statics import first_moment
 from uvms_dynamics import (
@@ -26,7 +26,8 @@ from uvms_dynamics import (
     mass_matrix,
     restoring_wrench,
 )
-from uvms_dynamics.kernels.rotations import rpy_to_quat
+from uvms_dynamics.kernels.rotations import quat_to_matrix, rpy_to_quat
+from uvms_dynamics.payload import with_payload
 
 VEHICLE = load_vehicle()
 MODEL = build_model(VEHICLE)
@@ -34,7 +35,7 @@ STOWED = np.radians([0.0, 0.0, 135.0, 0.0])
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 PERIOD, ENGAGED = 0.05, 10.0
 SWAY, ROLL = 1, 3
-ALL, PASSING = np.ones(6, dtype=bool), np.eye(6)
+ALL, PASSING, FULL = np.ones(6, dtype=bool), np.eye(6), np.ones(6)
 
 
 def make(law=Controller):
@@ -54,9 +55,9 @@ def wrench_of(controller, state, known, reference=None, budget=None):
     return wrench.wrench
 
 
-def by_hand(gains: VehicleGains, controller, error, rate):
+def by_hand(gains: VehicleGains, controller, error, rate, mass=None):
     """Feedback acceleration (6,), A S(2 D (e_dot + r(e)) / A), from its formula."""
-    mass = mass_matrix(MODEL, STOWED)[:6, :6]
+    mass = mass_matrix(MODEL, STOWED)[:6, :6] if mass is None else mass
     A = gains.amplitude(controller._axes.authority, mass)
     slope, braking = gains.stiffness / gains.damping, BRAKING * A
     linear = braking / slope**2
@@ -86,7 +87,7 @@ def test_without_error_the_reference_acceleration_comes_out(t):
     mass = np.ascontiguousarray(mass_matrix(MODEL, q)[:6, :6])
     none, some = np.zeros(6), np.full(6, 0.3)
     wrench = law_wrench(
-        MODEL, ALL, PASSING, some, some, some, nu, mass, none, none, nu_dot, known
+        MODEL, ALL, PASSING, FULL, some, some, some, nu, mass, none, none, nu_dot, known
     )  # fmt: skip
     torque = inverse_dynamics(MODEL, quaternion, nu, nu_dot, q, q_dot, q_ddot)[6:]
     found = forward_dynamics(MODEL, quaternion, nu, q, q_dot, np.concatenate((wrench, torque)))
@@ -152,11 +153,13 @@ def test_the_drag_of_the_reference_velocity_is_fed_forward():
     nu = np.array([0.4, -0.2, 0.1, 0.05, -0.1, 0.2])
     none, some = np.zeros(6), np.full(6, 0.3)
     mass = np.ascontiguousarray(mass_matrix(MODEL, STOWED)[:6, :6])
-    found = law_wrench(MODEL, ALL, PASSING, some, some, some, nu, mass, none, none, none, none)
+    found = law_wrench(
+        MODEL, ALL, PASSING, FULL, some, some, some, nu, mass, none, none, none, none
+    )  # fmt: skip
     assert np.allclose(found, hull_bias_wrench(MODEL, nu), atol=1e-12)
     slip = np.array([0.3, 0.0, 0.0, 0.0, 0.0, 0.0])  # as a current would give it
     slipping = law_wrench(
-        MODEL, ALL, PASSING, 0 * some, 0 * some, some, nu - slip, mass, none, slip, none, none
+        MODEL, ALL, PASSING, FULL, 0 * some, 0 * some, some, nu - slip, mass, none, slip, none, none
     )  # fmt: skip
     assert np.allclose(slipping, hull_bias_wrench(MODEL, nu), atol=1e-12)
 
@@ -243,9 +246,11 @@ def test_with_the_gains_by_rule_a_return_overshoots_by_two_centimetres_at_most(a
     assert farthest_beyond(start, P, D, A, 120.0) < 0.02
 
 
-def test_the_law_engages_with_what_is_fed_forward_and_comes_up_from_there():
+@pytest.mark.parametrize("error", [0.05, 0.5, 20.0])
+def test_the_law_engages_with_what_is_fed_forward_and_comes_up_in_equal_steps(error):
+    """Of any error: at the second tick there is one step of many, and not the whole thrust."""
     controller = make()
-    state = at_rest(STOWED, position=(-0.05, 0.0, 0.0))
+    state = at_rest(STOWED, position=(-error, 0.0, 0.0))
     mass = mass_matrix(MODEL, STOWED)[:6, :6]
     found = []
     for k in range(60):
@@ -255,22 +260,22 @@ def test_the_law_engages_with_what_is_fed_forward_and_comes_up_from_there():
         found.append(np.linalg.solve(mass, wrench.wrench + KNOWN))
     assert np.allclose(found[0], 0.0, atol=1e-12)
     surge = np.array(found)[:, 0]
-    up = int(np.ceil(2.0 / np.sqrt(controller._gains.stiffness[0]) / PERIOD))
-    assert np.all(np.diff(surge[: up + 1]) > 0.0)
-    assert np.ptp(surge[up:]) < 1e-12
+    step = PERIOD * np.sqrt(controller._gains.stiffness[0]) / 2.0
+    share = np.minimum(step * np.arange(60), 1.0)
+    assert np.allclose(surge, share * surge[-1], atol=1e-12)
+    assert surge[-1] > 0.0
+    assert share[-1] == 1.0
     controller.reset()
     odometry, joints = state.estimates(0)
     again, _ = controller.step(odometry, joints, Wrench(0, KNOWN), hold(STOWED))
     assert np.allclose(again.wrench, -KNOWN, atol=1e-12)
 
 
-def test_the_restoring_moment_is_that_of_the_arm_a_thruster_lag_ahead():
-    """The arm swings sideways at a constant rate; its weight is carried where it will be."""
-    controller, rate = make(), np.array([0.3, 0.0, 0.0, 0.0])
-    q = np.radians([40.0, 0.0, 45.0, 0.0])
+def swinging(q, rate):
+    """Reference (20 s) of a vehicle that rests and joints that move at a constant rate."""
     held = hold(q)
     times = np.array([0.0, 20.0])
-    reference = replace(
+    return replace(
         held,
         times=times,
         **{n: np.repeat(getattr(held, n), 2, axis=0) for n in
@@ -278,6 +283,13 @@ def test_the_restoring_moment_is_that_of_the_arm_a_thruster_lag_ahead():
         q=q + times[:, None] * rate,
         q_dot=np.repeat(rate[None], 2, axis=0),
     )  # fmt: skip
+
+
+def test_the_restoring_moment_is_that_of_the_arm_a_thruster_lag_ahead():
+    """The arm swings sideways at a constant rate; its weight is carried where it will be."""
+    controller, rate = make(), np.array([0.3, 0.0, 0.0, 0.0])
+    q = np.radians([40.0, 0.0, 45.0, 0.0])
+    reference = swinging(q, rate)
     lead = controller._lead * 1e-9
     assert lead >= PERIOD / 2
     stamp = to_nanoseconds(0.5)
@@ -288,6 +300,41 @@ def test_the_restoring_moment_is_that_of_the_arm_a_thruster_lag_ahead():
     ahead = restoring_wrench(MODEL, LEVEL, q + (0.5 + lead) * rate)
     assert np.allclose(wrench.wrench[3:], -ahead[3:], atol=1e-9)
     assert np.abs(ahead - acts)[ROLL] > 0.01
+
+
+def test_a_confirmed_payload_is_carried_once_where_the_arm_will_be_and_let_go_again():
+    """Weight, moment and inertia: tilted, with the arm on its way, and in force with an error."""
+    q, rate, phi = np.radians([40.0, 0.0, 45.0, 0.0]), np.array([0.3, 0.0, 0.0, 0.0]), 0.1
+    payload = Payload(
+        True, 1.0, 0.01, 5.0, 0.05, np.array([0.02, -0.01, 0.1]), np.full(3, 1e-3)
+    )  # fmt: skip
+    loaded = with_payload(MODEL, payload.mass, payload.weight, payload.position)
+    tilt = rpy_to_quat(phi, 0.0, 0.0)
+    controller = make()
+    lead, start = controller._lead * 1e-9, np.zeros(6)
+    cases = ((0.5, payload, loaded), (20.0 - 1.0, None, MODEL))
+    for t, held, model in cases:  # engaged in full at the second of them
+        state = at_rest(q + t * rate, position=(0.0, -0.02, 0.0), quaternion=tilt)
+        acts = restoring_wrench(model, tilt, state.q)
+        stamp = to_nanoseconds(t)
+        controller.inform(replace(DisturbanceBudget(stamp, acts, start, start), payload=held), None)
+        odometry, joints = state.estimates(stamp)
+        engaged = 0.0 if held else 1.0
+        wrench, _ = controller.step(
+            odometry, joints, Wrench(stamp, acts), swinging(q, rate)
+        )  # fmt: skip
+        seen = controller.arm.observer.now[0]
+        assert np.allclose(seen, state.q, atol=1e-3)
+        ahead = restoring_wrench(model, LEVEL, seen + lead * rate)
+        turned = restoring_wrench(model, tilt, state.q) - restoring_wrench(model, tilt, seen)
+        mass = mass_matrix(model, seen)[:6, :6]
+        error = np.concatenate((quat_to_matrix(tilt).T @ -state.position, [-phi, 0.0, 0.0]))
+        feedback = engaged * by_hand(controller._gains, controller, error, start, mass)
+        left = wrench.wrench - mass @ feedback
+        assert np.allclose(left[:3], -acts[:3], atol=1e-9)
+        assert np.allclose(left[3:], -(ahead + turned)[3:], atol=1e-9)
+    weight = acts - restoring_wrench(loaded, tilt, state.q)
+    assert np.linalg.norm(weight[:3]) == pytest.approx(5.0, rel=1e-9)
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -10,17 +10,11 @@ from uvms_control.joint_observer import JointObserver
 from uvms_control.reference import ReferenceSample
 from uvms_control.vehicle_data import effort_limits, least_moment
 from uvms_core import checks
-from uvms_core.signals import (
-    Array,
-    DisturbanceBudget,
-    JointStates,
-    Odometry,
-    Payload,
-)
+from uvms_core.signals import Array, JointStates, Odometry, Payload
 from uvms_core.vehicle import Vehicle, joint_limits
-from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics import inverse_dynamics
 from uvms_dynamics.joint_prediction import encoder_variances, joint_age_limit, loop_delay
-from uvms_dynamics.payload import with_payload
+from uvms_dynamics.payload import LoadedModel
 
 PERIOD_S = 0.05
 """Control period that gains are made for until `prepare` or two ticks tell the real one."""
@@ -29,9 +23,10 @@ PERIOD_S = 0.05
 class ArmLaw:
     """Joint torques by eq. (19), for a reference that makes up for the vehicle's own motion."""
 
-    def __init__(self, vehicle: Vehicle, model: Model, config: ControlConfig):
-        """`model`: kernel tables of `vehicle`, as `uvms_dynamics.build_model` makes them."""
-        self._vehicle, self._config, self._nominal = vehicle, config, model
+    def __init__(self, vehicle: Vehicle, loaded: LoadedModel, config: ControlConfig):
+        """`loaded`: model of `vehicle` with what it holds, shared with the vehicle's law."""
+        self._vehicle, self._config, self._loaded = vehicle, config, loaded
+        model = loaded.model
         self._n = vehicle.n_joints
         effort, load = effort_limits(vehicle), config.arm.load_limit
         self.joints = ArmController(effort, config.arm.amplitude, config.arm.friction_compensation)
@@ -54,9 +49,7 @@ class ArmLaw:
 
     def reset(self) -> None:
         """Return to the state before the first step."""
-        self._told: Payload | None = None
-        self._payload: Payload | None = None  # that is in the model
-        self._model = self._nominal
+        self._nu_dot = np.zeros(6)  # of the last step
         self.observer.reset()
         self.compensation.reset()
 
@@ -64,14 +57,22 @@ class ArmLaw:
         """SignalError where the joint state is later than the tick, ns, or too old for it."""
         checks.age("joint_states", joints.stamp, tick, self._age_limit)
 
-    def inform(self, budget: DisturbanceBudget) -> None:
-        """What the observer knows of the payload; called before `step`."""
-        self._told = budget.payload
-
     def observe(self, joints: JointStates, tick: int) -> tuple[Array, Array]:
         """Angles and rates (n,) at the tick, ns, by encoders, torques and model."""
         now = self.observer.step(joints, tick)
         return now[0], now[1]
+
+    def take(self, payload: Payload | None, odometry: Odometry) -> None:
+        """Let the shared model have this payload where it is confirmed, or let it go again.
+
+        `observe` comes before. What the model now explains is no longer an unknown load, so that
+        the torque has no step.
+        """
+        if not self._loaded.would_take(payload):
+            return
+        before = self._holding_torque(odometry)
+        self._loaded.take(payload)
+        self.observer.shift_load(self._holding_torque(odometry) - before)
 
     def step(
         self,
@@ -96,14 +97,14 @@ class ArmLaw:
         if dt > 0.0 and not self._is_prepared:
             self.prepare(dt)
         motion = odometry.quaternion, odometry.nu, nu_dot
-        self._take_payload(motion)
+        self._nu_dot = nu_dot
         correction = self._correction(odometry, desired, mass, dt)
         aim = JointAim(
             desired.q + correction.angle,
             desired.q_dot + correction.rate,
             desired.q_ddot + correction.acceleration,
         )
-        effort, drive = self.joints.step(self._model, motion, mass, self.observer.now, aim)
+        effort, drive = self.joints.step(self._loaded.model, motion, mass, self.observer.now, aim)
         self.observer.command(odometry.stamp, drive)
         return effort
 
@@ -114,29 +115,15 @@ class ArmLaw:
             return self.compensation.step(odometry, desired, mass, dt)
         return JointCorrection(np.zeros(self._n), np.zeros(self._n), np.zeros(self._n))
 
-    def _take_payload(self, motion: tuple[Array, Array, Array]) -> None:
-        """Take a payload into the model once it is confirmed, without a step of the torque."""
-        held = self._told if self._told is not None and self._told.held else None
-        if held is None and self._payload is None:
-            return
-        if held is not None and self._payload is not None and _is_alike(held, self._payload):
-            return
-        before = self._holding_torque(motion)
-        self._payload, self._model = held, self._nominal
-        if held is not None:
-            self._model = with_payload(self._nominal, held.mass, held.weight, held.position)
-        self.observer.shift_load(self._holding_torque(motion) - before)
-
-    def _holding_torque(self, motion: tuple[Array, Array, Array]) -> Array:
+    def _holding_torque(self, odometry: Odometry) -> Array:
         q, q_dot, _ = self.observer.now
-        torque: Array = inverse_dynamics(self._model, *motion, q, q_dot, np.zeros(self._n))[6:]
+        torque: Array = inverse_dynamics(
+            self._loaded.model,
+            odometry.quaternion,
+            odometry.nu,
+            self._nu_dot,
+            q,
+            q_dot,
+            np.zeros(self._n),
+        )[6:]
         return torque
-
-
-def _is_alike(one: Payload, other: Payload) -> bool:
-    """Whether two estimates differ by less than their own uncertainty."""
-    return (
-        abs(one.mass - other.mass) <= 0.5 * one.mass_sigma
-        and abs(one.weight - other.weight) <= 0.5 * one.weight_sigma
-        and bool((np.abs(one.position - other.position) <= 0.5 * one.position_sigma).all())
-    )

@@ -1,7 +1,6 @@
 """The controller of vehicle and arm: one tick from estimated state and reference to commands."""
 
 from collections.abc import Mapping
-from dataclasses import replace
 from typing import ClassVar
 
 import numpy as np
@@ -10,10 +9,9 @@ from uvms_control.arm_law import ArmLaw
 from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
 from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
-from uvms_control.reference import ReferenceSample, sample_ahead, sample_reference
+from uvms_control.reference import PlannedMotion, ReferenceSample
 from uvms_control.stability import StabilityMonitor
-from uvms_control.tracking_error import TrackingError, tracking_error
-from uvms_control.vehicle_law import VehicleLaw, at_reference, joints_ahead
+from uvms_control.vehicle_law import VehicleLaw
 from uvms_core import checks
 from uvms_core.signals import (
     Allocation,
@@ -29,7 +27,16 @@ from uvms_core.signals import (
     to_seconds,
 )
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics import build_model, hull_bias_wrench, mass_matrix
+from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics.payload import LoadedModel
+
+NOTHING = np.zeros(6)
+UNTOLD = np.ones(6)
+"""Weight and buoyancy count as part of the disturbance where no budget says what it is made of."""
+NO_GAINS = VehicleGains(NOTHING, NOTHING, NOTHING, NOTHING, 0.0)
+"""Until the control period is known: what is known is fed forward, and nothing else."""
+NO_MONITOR = StabilityMonitor(NOTHING, NOTHING)
+"""Likewise: no stability is told."""
 
 
 class Controller:
@@ -47,14 +54,14 @@ class Controller:
         self._config = config
         self._vehicle = vehicle
         self._joint_names = vehicle.joint_names
-        self._model = build_model(vehicle)
+        self._loaded = LoadedModel(build_model(vehicle))
         self._law = VehicleLaw()
         self._axes = axes_of(vehicle)
         self._effectiveness = np.empty(0)
-        self._gains: VehicleGains | None = None
-        self._monitor: StabilityMonitor | None = None
+        self._gains = NO_GAINS
+        self._monitor = NO_MONITOR
         self._lead = 0
-        self.arm = ArmLaw(vehicle, self._model, config)
+        self.arm = ArmLaw(vehicle, self._loaded, config)
         self._budget: DisturbanceBudget | None = None
         self.reset()
 
@@ -73,17 +80,18 @@ class Controller:
     def reset(self) -> None:
         """Return to the state before the first step."""
         self.stability: Stability | None = None
-        self._lacking = np.zeros(6)  # of the last wrench, beyond what the thrusters gave
+        self._lacking = NOTHING  # of the last wrench, beyond what the thrusters gave
         self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
+        self._plan: PlannedMotion  # of that
         self._law.reset()
+        self._loaded.take(None)
         self.arm.reset()
 
     def inform(self, budget: DisturbanceBudget, allocation: Allocation | None) -> None:
         """What explains the disturbance, and what the thrusters gave a tick ago."""
         self._budget = budget
-        self.arm.inform(budget)
-        self._lacking = np.zeros(6) if allocation is None else allocation.residual
+        self._lacking = NOTHING if allocation is None else allocation.residual
         if allocation is not None and not np.array_equal(
             allocation.effectiveness, self._effectiveness
         ):
@@ -104,73 +112,48 @@ class Controller:
         """
         self._check(odometry, joints, disturbance, reference)
         dt = self._elapsed(odometry.stamp)
-        desired = sample_reference(reference, odometry.stamp)
         q, _ = self.arm.observe(joints, odometry.stamp)
-        mass = mass_matrix(self._model, q)
-        nu_dot, wrench = np.zeros(6), np.zeros(6)
+        if self._budget is not None:
+            self.arm.take(self._budget.payload, odometry)
+        planned = self._plan.row(odometry.stamp)
+        desired = self._plan.sample(planned)
         if self._config.enabled:
-            inertia = np.ascontiguousarray(mass[:6, :6])
-            acts = np.zeros(6) if disturbance is None else disturbance.wrench
-            known = acts if self._config.observer else np.zeros(6)
-            tracking, wrench = self._vehicle_wrench(
-                odometry, q, inertia, known, desired, reference, dt
-            )
-            nu_dot = tracking.acceleration
-            self.stability = self._judge(odometry, inertia, acts, tracking, wrench)
+            acts = NOTHING if disturbance is None else disturbance.wrench
+            mass, nu_dot, wrench = self._vehicle_share(odometry, q, acts, planned, desired, dt)
+        else:
+            mass, nu_dot, wrench = mass_matrix(self._loaded.model, q), np.zeros(6), np.zeros(6)
         effort = self.arm.step(odometry, desired, mass, nu_dot, dt)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
-    def _judge(
-        self,
-        odometry: Odometry,
-        mass: Array,
-        acts: Array,
-        tracking: TrackingError,
-        wrench: Array,
-    ) -> Stability | None:
-        """Lyapunov function and condition of eq. (27)-(29); None before the gains are known.
-
-        acts (6,): what acts ON the vehicle at its actual attitude, whether it is fed forward or
-        not. What the thrusters lacked a tick ago counts as lacking now.
-        """
-        if self._monitor is None:
-            return None
-        needed = mass @ tracking.acceleration + hull_bias_wrench(self._model, odometry.nu) - acts
-        given = wrench - self._lacking
-        return self._monitor.at(odometry.stamp, tracking.error, tracking.rate, mass, needed, given)
-
-    def _vehicle_wrench(
+    def _vehicle_share(
         self,
         odometry: Odometry,
         q: Array,
-        mass: Array,
-        known: Array,
+        acts: Array,
+        planned: Array,
         desired: ReferenceSample,
-        reference: Reference,
         dt: float,
-    ) -> tuple[TrackingError, Array]:
-        """Errors with the reference acceleration, and the wrench (6,)."""
-        if self._gains is None and dt > 0.0:
+    ) -> tuple[Array, Array, Array]:
+        """Mass matrix, reference acceleration (6,) and wrench (6,); `stability` is renewed."""
+        if self._gains is NO_GAINS and dt > 0.0:
             self.prepare(dt)
-        ahead = sample_ahead(reference, odometry.stamp, self._lead)
-        tracking = tracking_error(odometry, replace(desired, nu_dot=ahead.nu_dot))
-        if self._gains is None:
-            return tracking, -known
-        if known.any():
-            known = at_reference(
-                self._model,
-                known,
-                self._budget,
-                odometry,
-                tracking.error,
-                self._axes.is_controlled,
-                q,
-                joints_ahead(q, desired, ahead),
-            )
-        wrench = self._law.step(
-            self._model, self._axes, self._gains, odometry, mass, tracking, known, dt
+        ahead = self._plan.row_ahead(odometry.stamp, self._lead)
+        fed = acts if self._config.observer else NOTHING
+        restoring = UNTOLD if self._budget is None else self._budget.restoring
+        step = self._law.step(
+            self._loaded.model,
+            self._axes,
+            self._gains,
+            self._monitor,
+            odometry,
+            q,
+            (planned, ahead),
+            (acts, fed, restoring, self._lacking),
+            dt,
         )
-        return tracking, wrench
+        if self._monitor is not NO_MONITOR:
+            self.stability = Stability(odometry.stamp, *step.figures)
+        return step.mass, step.acceleration, step.wrench
 
     def _elapsed(self, stamp: int) -> float:
         """Seconds since the last step; 0 at the first."""
@@ -194,4 +177,4 @@ class Controller:
             checks.check("disturbance", disturbance)
         if reference is not self._reference:
             checks.check("reference", reference, n=self._joint_names)
-            self._reference = reference
+            self._reference, self._plan = reference, PlannedMotion(reference)

@@ -4,18 +4,21 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import ClassVar
 
+import numpy as np
+
 from uvms_control.config import ControlConfig
-from uvms_control.controller import Controller
+from uvms_control.controller import NO_MONITOR, Controller
 from uvms_control.design.conditions import check_slopes
 from uvms_control.design.vehicle_axes import Timing, vehicle_axes
 from uvms_control.reference import ReferenceSample
 from uvms_control.stability import StabilityMonitor
-from uvms_control.tracking_error import TrackingError, tracking_error
+from uvms_control.tracking_error import tracking_error
 from uvms_control.vehicle_controller import VehicleController
-from uvms_core.signals import Array, Odometry, Reference
+from uvms_core.signals import Array, Odometry
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.plausible.stability import postures
 from uvms_core.vehicle.postures import STOWED
+from uvms_dynamics import hull_bias_wrench, mass_matrix
 
 
 class PaperController(Controller):
@@ -30,7 +33,7 @@ class PaperController(Controller):
     def __init__(self, vehicle: Vehicle, config: ControlConfig):
         """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
         super().__init__(vehicle, config)
-        self.vehicle = VehicleController(self._model, config.vehicle)
+        self.vehicle = VehicleController(self._loaded.model, config.vehicle)
 
     def prepare(self, period: float) -> None:
         """Check the slopes near the reference for a control period in s, with the arm stowed.
@@ -56,16 +59,26 @@ class PaperController(Controller):
         if hasattr(self, "vehicle"):
             self.vehicle.reset()
 
-    def _vehicle_wrench(
+    def _vehicle_share(
         self,
         odometry: Odometry,
         q: Array,
-        mass: Array,
-        known: Array,
+        acts: Array,
+        planned: Array,
         desired: ReferenceSample,
-        reference: Reference,
         dt: float,
-    ) -> tuple[TrackingError, Array]:
-        """Errors with the reference acceleration, and the wrench (6,)."""
+    ) -> tuple[Array, Array, Array]:
+        """Mass matrix, reference acceleration (6,) and wrench (6,); `stability` is renewed."""
+        model, nothing = self._loaded.model, np.zeros(6)
+        mass = mass_matrix(model, q)
+        inertia = np.ascontiguousarray(mass[:6, :6])
         tracking = tracking_error(odometry, desired)
-        return tracking, self.vehicle.step(odometry, mass, known, tracking, dt)
+        fed = acts if self._config.observer else nothing
+        wrench = self.vehicle.step(odometry, inertia, fed, tracking, dt)
+        if self._monitor is NO_MONITOR:
+            return mass, tracking.acceleration, wrench
+        needed = inertia @ tracking.acceleration + hull_bias_wrench(model, odometry.nu) - acts
+        self.stability = self._monitor.at(
+            odometry.stamp, tracking.error, tracking.rate, inertia, needed, wrench - self._lacking
+        )
+        return mass, tracking.acceleration, wrench

@@ -6,11 +6,12 @@ linearly between the samples. At a sample every value is exactly the planner's. 
 reference the nearest end is held at rest.
 """
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from uvms_core.signals import Array, Reference, to_nanoseconds, to_seconds
+from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -21,6 +22,10 @@ from uvms_dynamics.kernels.rotations import (
 )
 
 SMALL_ANGLE = 1e-4  # rad; below it the series of the right Jacobian are exact to rounding
+
+# Columns of a sample in one row: vehicle and end effector, then angles, rates, accelerations of the
+# joints. `JOINTS` is the first of those.
+POSITION, QUATERNION, NU, NU_DOT, END_EFFECTOR, JOINTS = 0, 3, 7, 13, 19, 22
 
 
 @dataclass(frozen=True)
@@ -37,115 +42,151 @@ class ReferenceSample:
     end_effector: Array  # (3,)
 
 
+class PlannedMotion:
+    """A reference as one table, made once for all the ticks that it covers."""
+
+    def __init__(self, reference: Reference) -> None:
+        self._begin, self._end = reference.stamp, reference.end
+        self._times = np.ascontiguousarray(reference.times, dtype=np.float64)
+        self._stamps = np.array([to_nanoseconds(float(t)) for t in self._times], dtype=np.int64)
+        self._n = reference.q.shape[1]
+        self._table = np.hstack(
+            (
+                reference.position,
+                reference.quaternion,
+                reference.nu,
+                reference.nu_dot,
+                reference.end_effector,
+                reference.q,
+                reference.q_dot,
+                reference.q_ddot,
+            )
+        )
+
+    def row(self, stamp: int) -> Array:
+        """All values (22 + 3 n,) at a stamp, ns; at rest before the first and after the last."""
+        return planned_row(self._stamps, self._times, self._table, stamp - self._begin)
+
+    def row_ahead(self, stamp: int, lead: int) -> Array:
+        """The values `lead` ns after a stamp, as far as they are planned.
+
+        Beyond the last sample the joints go on with its velocity: the next reference takes over
+        within a few ticks, and to stop them there would be the greater error.
+        """
+        at = max(min(stamp + lead, self._end), self._begin)
+        row = self.row(at)
+        if (beyond := to_seconds(stamp + lead - at)) > 0.0:
+            q, rates = JOINTS, JOINTS + self._n
+            row[q:rates] += beyond * row[rates : rates + self._n]
+        return row
+
+    def sample(self, row: Array) -> ReferenceSample:
+        """The values of a row by their names."""
+        q, rates, accelerations = (JOINTS + k * self._n for k in range(3))
+        return ReferenceSample(
+            row[POSITION:QUATERNION],
+            row[QUATERNION:NU],
+            row[NU:NU_DOT],
+            row[NU_DOT:END_EFFECTOR],
+            row[q:rates],
+            row[rates:accelerations],
+            row[accelerations:],
+            row[END_EFFECTOR:JOINTS],
+        )
+
+
 def sample_reference(reference: Reference, stamp: int) -> ReferenceSample:
     """The reference at `stamp` (ns); held at rest before its first and after its last sample."""
-    since = stamp - reference.stamp
-    if since < 0:
-        return _at_rest(reference, 0)
-    if stamp > reference.end:
-        return _at_rest(reference, -1)
-    t = to_seconds(since)
-    nearest = int(np.argmin(np.abs(reference.times - t)))
-    if to_nanoseconds(float(reference.times[nearest])) == since:
-        return _sample(reference, nearest)
-    return _between(reference, int(np.searchsorted(reference.times, t, side="right")) - 1, t)
+    motion = PlannedMotion(reference)
+    return motion.sample(motion.row(stamp))
 
 
 def sample_ahead(reference: Reference, stamp: int, lead: int) -> ReferenceSample:
-    """The joints and accelerations `lead` ns after a stamp, as far as they are planned.
-
-    Beyond the last sample the joints go on with its velocity: the next reference takes over within
-    a few ticks, and to stop them there would be the greater error.
-    """
-    at = max(min(stamp + lead, reference.end), reference.stamp)
-    sample, beyond = sample_reference(reference, at), to_seconds(stamp + lead - at)
-    return replace(sample, q=sample.q + max(beyond, 0.0) * sample.q_dot)
+    """The joints and accelerations `lead` ns after a stamp; see `PlannedMotion.row_ahead`."""
+    motion = PlannedMotion(reference)
+    return motion.sample(motion.row_ahead(stamp, lead))
 
 
-def _sample(reference: Reference, i: int) -> ReferenceSample:
-    return ReferenceSample(
-        reference.position[i],
-        reference.quaternion[i],
-        reference.nu[i],
-        reference.nu_dot[i],
-        reference.q[i],
-        reference.q_dot[i],
-        reference.q_ddot[i],
-        reference.end_effector[i],
-    )
+@exact_kernel
+def planned_row(stamps: Array, times: Array, table: Array, since: int) -> Array:
+    """Row of the table (k, 22 + 3 n) at `since` ns; stamps (k,) ns, times (k,) s."""
+    n, last = (table.shape[1] - JOINTS) // 3, stamps.shape[0] - 1
+    if since < 0 or since > stamps[last]:
+        row = table[0 if since < 0 else last].copy()
+        row[NU:END_EFFECTOR] = 0.0
+        row[JOINTS + n :] = 0.0
+        return row
+    i = 0
+    while i < last and stamps[i + 1] <= since:
+        i += 1
+    if stamps[i] == since:
+        return table[i].copy()
+    start, end = table[i], table[i + 1]
+    h = times[i + 1] - times[i]
+    s = (since * 1e-9 - times[i]) / h
+    row = (1.0 - s) * start + s * end  # accelerations and the end effector stay so
+    angles, rates = slice(JOINTS, JOINTS + n), slice(JOINTS + n, JOINTS + 2 * n)
+    _hermite(start[angles], end[angles], start[rates], end[rates], s, h, row[angles], row[rates])
+    quaternion = row[QUATERNION:NU]
+    _hermite_attitude(start, end, s, h, quaternion, row[NU + 3 : NU_DOT])
+    begins = quat_to_matrix(start[QUATERNION:NU]) @ start[NU : NU + 3]
+    ends = quat_to_matrix(end[QUATERNION:NU]) @ end[NU : NU + 3]
+    velocity = np.empty(3)
+    _hermite(start[:QUATERNION], end[:QUATERNION], begins, ends, s, h, row[:QUATERNION], velocity)
+    row[NU : NU + 3] = quat_to_matrix(quaternion).T @ velocity
+    return row
 
 
-def _at_rest(reference: Reference, i: int) -> ReferenceSample:
-    zero_joints = np.zeros_like(reference.q[i])
-    return ReferenceSample(
-        reference.position[i],
-        reference.quaternion[i],
-        np.zeros(6),
-        np.zeros(6),
-        reference.q[i],
-        zero_joints,
-        zero_joints,
-        reference.end_effector[i],
-    )
+@exact_kernel
+def _hermite(
+    x0: Array, x1: Array, v0: Array, v1: Array, s: float, h: float, x: Array, v: Array
+) -> None:
+    """Cubic Hermite polynomial x and its time derivative v at the share s of an interval h."""
+    for k in range(x.shape[0]):
+        d = x1[k] - x0[k]
+        curve = s * (1.0 - s) * h * ((1.0 - s) * v0[k] - s * v1[k])
+        slope = (1.0 - s) * (1.0 - 3.0 * s) * v0[k] + s * (3.0 * s - 2.0) * v1[k]
+        x[k] = x0[k] + s * s * (3.0 - 2.0 * s) * d + curve
+        v[k] = 6.0 * s * (1.0 - s) * d / h + slope
 
 
-def _between(reference: Reference, i: int, t: float) -> ReferenceSample:
-    h = float(reference.times[i + 1] - reference.times[i])
-    s = (t - float(reference.times[i])) / h
-    quaternion, omega = _hermite_attitude(reference, i, s, h)
-    v_world = [quat_to_matrix(reference.quaternion[k]) @ reference.nu[k, :3] for k in (i, i + 1)]
-    position, velocity = _hermite(
-        reference.position[i], reference.position[i + 1], v_world[0], v_world[1], s, h
-    )
-    q, q_dot = _hermite(
-        reference.q[i], reference.q[i + 1], reference.q_dot[i], reference.q_dot[i + 1], s, h
-    )
-    v_body = quat_to_matrix(quaternion).T @ velocity
-    return ReferenceSample(
-        position,
-        quaternion,
-        np.concatenate((v_body, omega)),
-        _linear(reference.nu_dot, i, s),
-        q,
-        q_dot,
-        _linear(reference.q_ddot, i, s),
-        _linear(reference.end_effector, i, s),
-    )
+@exact_kernel
+def _hermite_attitude(
+    start: Array, end: Array, s: float, h: float, quaternion: Array, omega: Array
+) -> None:
+    """Attitude and angular velocity (body frame) between the samples of two rows."""
+    first = start[QUATERNION:NU]
+    turn = quat_to_rotation_vector(quat_multiply(quat_conjugate(first), end[QUATERNION:NU]))
+    rate = inverse_right_jacobian(turn) @ end[NU + 3 : NU_DOT]
+    phi, phi_dot = np.empty(3), np.empty(3)
+    _hermite(np.zeros(3), turn, start[NU + 3 : NU_DOT], rate, s, h, phi, phi_dot)
+    turned = quat_multiply(first, rotation_vector_to_quat(phi))
+    quaternion[:] = turned / np.sqrt(np.sum(turned**2))
+    omega[:] = right_jacobian(phi) @ phi_dot
 
 
-def _linear(values: Array, i: int, s: float) -> Array:
-    return (1.0 - s) * values[i] + s * values[i + 1]
-
-
-def _hermite(x0: Array, x1: Array, v0: Array, v1: Array, s: float, h: float) -> tuple[Array, Array]:
-    """Cubic Hermite polynomial and its time derivative at the share s of an interval h."""
-    d = x1 - x0
-    x = x0 + s * s * (3.0 - 2.0 * s) * d + s * (1.0 - s) * h * ((1.0 - s) * v0 - s * v1)
-    v = 6.0 * s * (1.0 - s) * d / h + (1.0 - s) * (1.0 - 3.0 * s) * v0 + s * (3.0 * s - 2.0) * v1
-    return x, v
-
-
-def _hermite_attitude(reference: Reference, i: int, s: float, h: float) -> tuple[Array, Array]:
-    """Attitude and angular velocity (body frame) between samples i and i + 1."""
-    start, end = reference.quaternion[i], reference.quaternion[i + 1]
-    turn = quat_to_rotation_vector(quat_multiply(quat_conjugate(start), end))
-    rate_start = reference.nu[i, 3:]
-    rate_end = np.asarray(np.linalg.solve(right_jacobian(turn), reference.nu[i + 1, 3:]), float)
-    phi, phi_dot = _hermite(np.zeros(3), turn, rate_start, rate_end, s, h)
-    quaternion = quat_multiply(start, rotation_vector_to_quat(phi))
-    return quaternion / np.linalg.norm(quaternion), right_jacobian(phi) @ phi_dot
-
-
+@exact_kernel
 def right_jacobian(phi: Array) -> Array:
     """J_r(phi) (3, 3): body angular velocity = J_r(phi) d(phi)/dt for R = exp([phi]x).
 
     I - (1 - cos a) / a^2 [phi]x + (a - sin a) / a^3 [phi]x^2 with a = |phi| (Chirikjian,
     Stochastic Models, Information Theory, and Lie Groups, vol. 2, eq. (10.86)).
     """
-    angle = float(np.linalg.norm(phi))
+    angle = np.sqrt(np.sum(phi**2))
     cross = skew(phi)
     if angle < SMALL_ANGLE:
         return np.eye(3) - 0.5 * cross + cross @ cross / 6.0
     first = (1.0 - np.cos(angle)) / angle**2
     second = (angle - np.sin(angle)) / angle**3
     return np.eye(3) - first * cross + second * cross @ cross
+
+
+@exact_kernel
+def inverse_right_jacobian(phi: Array) -> Array:
+    """J_r(phi)^-1 (3, 3) = I + [phi]x / 2 + (1 - a / 2 cot(a / 2)) / a^2 [phi]x^2 (ib.)."""
+    angle = np.sqrt(np.sum(phi**2))
+    cross = skew(phi)
+    second = 1.0 / 12.0
+    if angle >= SMALL_ANGLE:
+        second = (1.0 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
+    return np.eye(3) + 0.5 * cross + second * cross @ cross

@@ -62,7 +62,9 @@ class StabilityMonitor:
         self.epsilon = EPSILON * float(np.min(damping, initial=np.inf, where=self._controlled))
         if not np.isfinite(self.epsilon):
             self.epsilon = 0.0  # no axis is controlled
-        self._weight = stiffness + self.epsilon * damping - self.epsilon**2
+        weight = stiffness + self.epsilon * damping - self.epsilon**2
+        self.constants = weight, self.epsilon, self._controlled
+        """Weight (6,), epsilon and controlled axes (6,), as `stability_figures` takes them."""
 
     def at(
         self,
@@ -83,9 +85,7 @@ class StabilityMonitor:
             needed: b (6,), N and N m.
             wrench: tau (6,), N and N m, as far as the thrusters give it.
         """
-        found = stability_figures(
-            error, rate, inertia, needed, wrench, self._weight, self.epsilon, self._controlled
-        )
+        found = stability_figures(error, rate, inertia, needed, wrench, *self.constants)
         return Stability(stamp, *found)
 
 

@@ -37,12 +37,12 @@ def tracking_error(odometry: Odometry, desired: ReferenceSample) -> TrackingErro
     """
     at, to = odometry, desired
     return TrackingError(
-        *_errors(at.position, at.quaternion, at.nu, to.position, to.quaternion, to.nu, to.nu_dot)
+        *errors(at.position, at.quaternion, at.nu, to.position, to.quaternion, to.nu, to.nu_dot)
     )
 
 
 @exact_kernel
-def _errors(
+def errors(
     position: Array,
     quaternion: Array,
     nu: Array,
@@ -51,6 +51,7 @@ def _errors(
     desired_nu: Array,
     desired_nu_dot: Array,
 ) -> tuple[Array, Array, Array]:
+    """The three of `TrackingError`."""
     R_world_body = quat_to_matrix(quaternion)
     turn = quat_multiply(quat_conjugate(quaternion), desired_quaternion)
     R_body_desired = quat_to_matrix(turn)

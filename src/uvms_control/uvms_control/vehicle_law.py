@@ -17,19 +17,31 @@ F_dis is that of the instant at which the thrust comes, a thruster lag from now:
 planned, so that its restoring moment is known ahead.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 
 from uvms_control.controlled_axes import ControlledAxes, Flags
-from uvms_control.design.gains import VehicleGains
-from uvms_control.reference import ReferenceSample
-from uvms_control.tracking_error import TrackingError
-from uvms_core.signals import Array, DisturbanceBudget, Odometry
-from uvms_dynamics import Model, hull_bias_wrench, restoring_wrench
+from uvms_control.design.gains import ENGAGES_IN, VehicleGains
+from uvms_control.reference import END_EFFECTOR, JOINTS, NU, NU_DOT, POSITION, QUATERNION
+from uvms_control.stability import StabilityMonitor, stability_figures
+from uvms_control.tracking_error import errors
+from uvms_core.signals import Array, Odometry
+from uvms_dynamics import Model, hull_bias_wrench, mass_matrix, restoring_wrench
 from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 
 BRAKING = 0.5
 """Share of the law's greatest acceleration with which the vehicle brakes when it returns."""
+
+
+class Engaged(NamedTuple):
+    """One step of the law, as the arm's share and the log need it."""
+
+    mass: Array  # M(q) (6 + n, 6 + n)
+    acceleration: Array  # (6,) of the reference, in the body frame
+    wrench: Array  # (6,) N and N m, body frame
+    figures: tuple[float, float, float, float]  # of `stability_figures`
 
 
 class VehicleLaw:
@@ -47,40 +59,101 @@ class VehicleLaw:
         model: Model,
         axes: ControlledAxes,
         gains: VehicleGains,
+        monitor: StabilityMonitor,
         odometry: Odometry,
-        mass: Array,
-        tracking: TrackingError,
-        known: Array,
+        q: Array,
+        rows: tuple[Array, Array],
+        acts: tuple[Array, Array, Array, Array],
         dt: float,
-    ) -> Array:
-        """Wrench (6,) N and N m in the body frame.
+    ) -> Engaged:
+        """One step.
 
         Args:
-            model: kernel tables of the vehicle.
+            model: kernel tables of the vehicle with what it holds.
             axes: what the thrusters can do at present.
             gains: of the feedback.
+            monitor: of the stability.
             odometry: estimated state.
-            mass: (6, 6) vehicle block of M(q).
-            tracking: errors, and the reference acceleration at the instant the thrust comes.
-            known: (6,) F_dis, what acts ON the vehicle (`at_reference`).
+            q: (n,) joints now.
+            rows: of the plan (`PlannedMotion.row`), now and at the instant the thrust comes.
+            acts: (6,) each: what acts ON the vehicle at its actual attitude; what of it is fed
+                forward; its part by weight and buoyancy, zeros where the
+                observer has none; what the thrusters lacked a tick ago, and lack now as well.
             dt: since the last step, s; 0 at the first.
         """
         self._engaged_s += dt
-        share = np.minimum(gains.engaged_share(self._engaged_s), 1.0)
-        return law_wrench(
-            model,
-            axes.is_controlled,
-            axes.passing,
-            share * gains.stiffness,
-            share * gains.damping,
-            gains.amplitude(axes.authority, mass),
-            odometry.nu,
-            mass,
-            tracking.error,
-            tracking.rate,
-            tracking.acceleration,
-            known,
+        return Engaged(
+            *vehicle_step(
+                model,
+                (odometry.position, odometry.quaternion, odometry.nu),
+                q,
+                rows,
+                acts,
+                (axes.is_controlled, axes.passing, axes.authority),
+                (gains.stiffness, gains.damping, gains.authority_share),
+                monitor.constants,
+                self._engaged_s,
+            )
         )
+
+
+@exact_kernel
+def vehicle_step(
+    model: Model,
+    state: tuple,
+    q: Array,
+    rows: tuple,
+    acts: tuple,
+    axes: tuple,
+    gains: tuple,
+    monitor: tuple,
+    engaged_s: float,
+) -> tuple:
+    """Mass matrix, reference acceleration, wrench and stability; see `VehicleLaw.step`."""
+    position, quaternion, nu = state
+    planned, ahead = rows
+    disturbance, fed, restoring, lacking = acts
+    is_controlled, passing, authority = axes
+    stiffness, damping, authority_share = gains
+    mass = mass_matrix(model, q)
+    inertia = mass[:6, :6].copy()
+    error, rate, acceleration = errors(
+        position,
+        quaternion,
+        nu,
+        planned[POSITION:QUATERNION],
+        planned[QUATERNION:NU],
+        planned[NU:NU_DOT],
+        ahead[NU_DOT:END_EFFECTOR],
+    )
+    known = fed
+    if np.any(fed != 0.0) and np.any(restoring != 0.0):
+        n = q.shape[0]
+        q_ahead = q + (ahead[JOINTS : JOINTS + n] - planned[JOINTS : JOINTS + n])
+        turn = np.where(is_controlled[3:], error[3:], 0.0)
+        known = fed + moved_restoring(model, quaternion, turn, q, q_ahead)
+    share = np.minimum(engaged_s * np.sqrt(stiffness) / ENGAGES_IN, 1.0)
+    amplitude = authority_share * authority / np.diag(inertia)
+    wrench = law_wrench(
+        model,
+        is_controlled,
+        passing,
+        share,
+        stiffness,
+        damping,
+        amplitude,
+        nu,
+        inertia,
+        error,
+        rate,
+        acceleration,
+        known,
+    )
+    needed = inertia @ acceleration + hull_bias_wrench(model, nu) - disturbance
+    weight, epsilon, observed = monitor
+    given = wrench - lacking
+    figures = stability_figures(error, rate, inertia, needed, given, weight, epsilon, observed)
+    return mass, acceleration, wrench, figures
 
 
 @exact_kernel
@@ -88,6 +161,7 @@ def law_wrench(
     model: Model,
     is_controlled: Flags,
     passing: Array,
+    share: Array,
     stiffness: Array,
     damping: Array,
     amplitude: Array,
@@ -98,12 +172,16 @@ def law_wrench(
     reference_acceleration: Array,
     known: Array,
 ) -> Array:
-    """The law of the module; all arrays (6,), but `passing` and `mass` (6, 6)."""
+    """The law of the module; all arrays (6,), but `passing` and `mass` (6, 6).
+
+    `share` of the feedback, and not of its gains: of a large error a small share of the gains
+    would ask for the whole amplitude as well.
+    """
     acceleration = np.zeros(6)
     for i in range(6):
         if is_controlled[i]:
             feedback = _feedback(error[i], rate[i], stiffness[i], damping[i], amplitude[i])
-            acceleration[i] = reference_acceleration[i] + feedback
+            acceleration[i] = reference_acceleration[i] + share[i] * feedback
     wrench = mass @ acceleration + hull_bias_wrench(model, nu + rate) - known
     return passing @ wrench
 
@@ -134,46 +212,16 @@ def return_speed(error: float, slope: float, braking: float) -> float:
     return np.sign(error) * np.sqrt(2.0 * braking * (distance - 0.5 * linear))
 
 
-def at_reference(
-    model: Model,
-    total: Array,
-    budget: DisturbanceBudget | None,
-    odometry: Odometry,
-    error: Array,
-    is_controlled: Flags,
-    q: Array,
-    q_ahead: Array,
-) -> Array:
-    """F_dis (6,) with the restoring moment of the reference attitude and of the arm to come.
-
-    Args:
-        model: kernel tables of the vehicle.
-        total: (6,) disturbance as the observer gives it, at the actual attitude, eq. (21).
-        budget: its parts; an observer without a restoring part gets none.
-        odometry: estimated state.
-        error: (6,) of position and attitude, body frame. Axes that are not controlled stay as they
-            are.
-        is_controlled: (6,) axes.
-        q: (n,) joints now.
-        q_ahead: (n,) where the arm will be when the thrust comes.
-    """
-    if budget is not None and not budget.restoring.any():
-        return total
-    turn = np.where(is_controlled[3:], error[3:], 0.0)
-    return total + _moved_restoring(model, odometry.quaternion, turn, q, q_ahead)
-
-
 @exact_kernel
-def _moved_restoring(
+def moved_restoring(
     model: Model, quaternion: Array, turn: Array, q: Array, q_ahead: Array
 ) -> Array:
-    """Change (6,) of the restoring moment to another attitude and posture; no force."""
+    """Change (6,) of the restoring moment to another attitude and posture; no force.
+
+    turn (3,): rotation vector to that attitude, about the axes that are controlled; the others stay
+    as they are. q, q_ahead (n,): joints now, and when the thrust comes.
+    """
     target = quat_multiply(quaternion, rotation_vector_to_quat(turn))
     change = restoring_wrench(model, target, q_ahead) - restoring_wrench(model, quaternion, q)
     change[:3] = 0.0
     return change
-
-
-def joints_ahead(q: Array, desired: ReferenceSample, ahead: ReferenceSample) -> Array:
-    """Joint angles (n,) when the thrust comes: the measured ones, moved as planned."""
-    return q + (ahead.q - desired.q)

@@ -151,6 +151,11 @@ def differs(payload: Payload, other: Payload) -> bool:
     )
 
 
+def _held(payload: Payload | None) -> Payload | None:
+    """The payload, if it is confirmed."""
+    return payload if payload is not None and payload.held else None
+
+
 class LoadedModel:
     """The model of a vehicle with what its gripper holds, for whoever works with the model.
 
@@ -164,17 +169,21 @@ class LoadedModel:
         self.model: Model = bare
         """Table with the payload that is held."""
 
+    def would_take(self, payload: Payload | None) -> bool:
+        """Whether `take` would make `model` anew."""
+        held, known = _held(payload), self._payload
+        if held is None or known is None:
+            return held is not known
+        return differs(held, known)
+
     def take(self, payload: Payload | None) -> bool:
         """Let `model` have this payload; True where it is made anew.
 
         It is where the payload is confirmed, let go, or noticeably other than before.
         """
-        held = payload if payload is not None and payload.held else None
-        known = self._payload
-        if held is None and known is None:
+        if not self.would_take(payload):
             return False
-        if held is not None and known is not None and not differs(held, known):
-            return False
+        held = _held(payload)
         self._payload = held
         self.model = self._bare
         if held is not None:

@@ -244,14 +244,13 @@ class ThrustAllocator:
     def _result(
         self, stamp: int, tau: Array, thrust: Array, lower: Array, upper: Array
     ) -> tuple[ThrusterCommand, Allocation]:
-        achieved = given = self._given @ thrust
         if self._lag is not None:
             self._lag.hold(stamp, thrust)
-            given = self._slope @ thrust + self._coming
-        saturated = np.empty(thrust.size, dtype=np.bool_)
+        wrenches, saturated = np.empty((2, 6)), np.empty(thrust.size, dtype=np.bool_)
+        weigh(self._given, self._slope, self._coming, tau, thrust, wrenches)
         mark_saturated(thrust, lower, upper, self._margin, self._reverses, self._dead, saturated)
-        residual = tau - given
         command = ThrusterCommand(stamp, thrust)
+        achieved, residual = wrenches
         return command, Allocation(stamp, thrust, achieved, residual, saturated, self.effectiveness)
 
     def _bounds(self, stamp: int) -> tuple[Array, Array]:
@@ -307,6 +306,21 @@ class WeightedAllocator(ThrustAllocator):
             else:
                 high = share
         return best
+
+
+@exact_kernel
+def weigh(given, slope, coming, tau, thrust, wrenches):
+    """Wrench achieved and what is left of `tau` (6,) into `wrenches` (2, 6).
+
+    `given`, `slope` (6, m): wrench per newton of command, in the end and by the end of the period;
+    `coming` (6,): what comes by then of the thrusts before.
+    """
+    for row in range(6):
+        achieved, soon = 0.0, 0.0
+        for i in range(thrust.size):
+            achieved += given[row, i] * thrust[i]
+            soon += slope[row, i] * thrust[i]
+        wrenches[0, row], wrenches[1, row] = achieved, tau[row] - (soon + coming[row])
 
 
 @exact_kernel

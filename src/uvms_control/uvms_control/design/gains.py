@@ -50,10 +50,6 @@ class VehicleGains:
         """A (6,): greatest acceleration of the feedback, m/s^2 and rad/s^2."""
         return self.authority_share * authority / np.diag(mass)
 
-    def engaged_share(self, engaged_s: float) -> Array:
-        """Share (6,) of the gains this long after the law was engaged, up to 1 and beyond."""
-        return engaged_s * np.sqrt(self.stiffness) / ENGAGES_IN
-
 
 def vehicle_gains(vehicle: Vehicle, period: float, config: GainConfig) -> VehicleGains:
     """The gains for a control period in s.
