@@ -63,6 +63,23 @@ def test_axes_that_nothing_brings_back_are_taken_first():
         assert taken == set(order[:m])
 
 
+@pytest.mark.parametrize(
+    "dead",
+    [
+        ("vertical_fore_port", "vertical_aft_starboard"),
+        ("vertical_fore_starboard", "vertical_aft_port"),
+    ],
+)
+def test_of_roll_and_pitch_together_the_one_with_the_longer_lever_is_controlled(dead):
+    """Of the verticals a diagonal is left: +-T at (0.55, 0.10) m, so that K / M = 0.10 / 0.55.
+
+    Roll controlled instead would give 5.5 times as much pitch in passing, and capsize the hull.
+    """
+    found = axes_of(REFERENCE, without(*dead))
+    assert controlled(REFERENCE, without(*dead)) == set(AXES) - {"roll"}
+    assert abs(found.passing[3, 4]) == pytest.approx(0.10 / 0.55)
+
+
 def test_dead_thrusters_control_nothing():
     """All of them told dead: the law asks for nothing, and goes on."""
     axes = axes_of(REFERENCE, np.zeros(len(NAMES)))

@@ -1,7 +1,9 @@
 """Which axes of a vehicle its thrusters control, and what the others get in passing.
 
 A layout of rank r controls r axes. Those come first that nothing else brings back: heave, yaw,
-surge and sway; roll and pitch have the righting moment of the hull. An axis that is left out is the
+surge and sway; roll and pitch have the righting moment of the hull. Where only one of these two is
+left (two thrusters dead), it is the one with the greater moment: they are righted alike, and what
+the thrusters give the other one in passing is then the smaller. An axis that is left out is the
 hull's: the law asks nothing of it, and none of the others is traded for it. What the thrusters do
 to it in passing (a surge thruster below the centre of mass pitches the vehicle) is known, and is
 part of the wrench that is asked for, so that an allocator of any kind can give it exactly.
@@ -20,8 +22,10 @@ from uvms_dynamics import thruster_matrix
 Flags = NDArray[np.bool_]
 
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
-FIRST = (2, 5, 0, 1, 3, 4)
+FIRST = (2, 5, 0, 1)
 """Order in which axes are taken: those without a righting moment of their own come first."""
+RIGHTED = (3, 4)
+"""Then these, the one with the greater moment first."""
 INDEPENDENT = 0.05
 """Least singular value of the rows of the axes taken, each row of unit length in shares of the
 limits: below it an axis would cost twenty times the thrust that it costs alone."""
@@ -77,11 +81,11 @@ def controlled_axes(matrix: Array, lower: Array, upper: Array, constants: Array)
 
 
 def _independent(shares: Array) -> list[int]:
-    """Axes whose rows of thrust shares (6, m) are independent, in the order of `FIRST`."""
+    """Axes whose rows of thrust shares (6, m) are independent, in order of importance."""
     lengths = np.linalg.norm(shares, axis=1)
     rows = shares / np.maximum(lengths, 1e-300)[:, None]
     taken: list[int] = []
-    for axis in FIRST:
+    for axis in (*FIRST, *sorted(RIGHTED, key=lambda each: -lengths[each])):
         if lengths[axis] <= 0.0:
             continue
         least = np.linalg.svd(rows[[*taken, axis]], compute_uv=False)[-1]

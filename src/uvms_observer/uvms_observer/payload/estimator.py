@@ -148,8 +148,12 @@ class PayloadEstimator:
         size, spread = max(abs(phi[0]), 1e-9), np.sqrt(covariance.diagonal())
         place = np.abs(phi[1:4]) / self._known[0]
         mass = abs(phi[4] / size - self._known[1]) / self._known[2]
+        is_a_body = phi[4] > 0.0  # the step of a grasp in motion can look as if it had none
         return bool(
-            size > SIGNIFICANT * spread[0] and place.max() < SIGNIFICANT and mass < SIGNIFICANT
+            is_a_body
+            and size > SIGNIFICANT * spread[0]
+            and place.max() < SIGNIFICANT
+            and mass < SIGNIFICANT
         )
 
     def _let_go(self, y: Array) -> None:
