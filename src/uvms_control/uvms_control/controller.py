@@ -7,6 +7,7 @@ from typing import ClassVar
 import numpy as np
 
 from uvms_control.arm_law import ArmLaw
+from uvms_control.compensation import as_if_held
 from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
 from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
@@ -107,7 +108,7 @@ class Controller:
         desired = sample_reference(reference, odometry.stamp)
         q, _ = self.arm.observe(joints, odometry.stamp)
         mass = mass_matrix(self._model, q)
-        nu_dot, wrench = np.zeros(6), np.zeros(6)
+        nu_dot, wrench, held = np.zeros(6), np.zeros(6), odometry
         if self._config.enabled:
             inertia = np.ascontiguousarray(mass[:6, :6])
             acts = np.zeros(6) if disturbance is None else disturbance.wrench
@@ -116,8 +117,9 @@ class Controller:
                 odometry, q, inertia, known, desired, reference, dt
             )
             nu_dot = tracking.acceleration
+            held = as_if_held(odometry, tracking, self._axes.is_controlled)
             self.stability = self._judge(odometry, inertia, acts, tracking, wrench)
-        effort = self.arm.step(odometry, desired, mass, nu_dot, dt)
+        effort = self.arm.step(odometry, desired, mass, nu_dot, dt, held)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
     def _judge(
