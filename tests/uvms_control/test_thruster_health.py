@@ -199,7 +199,7 @@ def test_saturation_and_what_is_missing_are_told_after_a_while():
     assert allocator.part.trouble() is None
     allocator.run(3.0, [200.0, 0, 0, 0, 0, 0])
     trouble = allocator.part.trouble()
-    assert trouble.level == ERROR
+    assert trouble.level == WARN  # whole thrusters that are asked for too much have not failed
     assert "surge: not achieved for more than 2 s" in trouble.text
     assert "main at the limit for more than 3 s" in trouble.text
 

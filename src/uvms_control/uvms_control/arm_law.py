@@ -81,6 +81,7 @@ class ArmLaw:
         mass: Array,
         nu_dot: Array,
         dt: float,
+        held: Odometry | None = None,
     ) -> Array:
         """Joint torques (n,) in N m within the drives' limits, held until the next step.
 
@@ -93,12 +94,14 @@ class ArmLaw:
             nu_dot: reference acceleration (6,) of the vehicle in its body frame; zeros where it is
                 not controlled.
             dt: time since the last step, s; 0 at the first.
+            held: pose and velocity that the arm makes up for, without errors that nothing ends
+                (`as_if_held`); None: those of `odometry`.
         """
         if dt > 0.0 and not self._is_prepared:
             self.prepare(dt)
         motion = odometry.quaternion, odometry.nu, nu_dot
         self._nu_dot = nu_dot
-        correction = self._correction(odometry, desired, mass, dt)
+        correction = self._correction(held or odometry, desired, mass, dt)
         aim = JointAim(
             desired.q + correction.angle,
             desired.q_dot + correction.rate,

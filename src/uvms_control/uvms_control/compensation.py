@@ -29,17 +29,34 @@ is the gain of a Wiener filter for a signal in noise of known power.
 
 Where the vehicle's own loop is faster than the filter, a correction c comes too late and would add
 to the error: of it is kept <d c> / <c^2>, d being the demand, which leaves the least of d - a c.
+
+A correction is worth what it brings. Where the vehicle has been carried away farther than the arm
+reaches, its bounds leave the tool off all the same, and an arm that is stretched for nothing tips
+the hull. With g the motion of the tool that the bounded correction gives, and l what the bounds
+take from it, w = |g| / (|g| + |l|) is what it is worth, and w^2 (3 - 2 w) of it is asked for: all
+of it within the bounds, nothing far beyond them, and smoothly between the two.
+
+An error along an axis that neither thrusters nor hull bring back only grows (`as_if_held`): the arm
+would be stretched after it as far as it goes, and is not.
 """
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from uvms_control.arm_config import CompensationConfig
+from uvms_control.controlled_axes import Flags
 from uvms_control.reference import ReferenceSample
+from uvms_control.tracking_error import TrackingError
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import Model, end_effector, end_effector_jacobian
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.rotations import (
+    quat_multiply,
+    quat_to_matrix,
+    rotation_vector_to_quat,
+)
 
 # Gauss-Newton steps: the first leaves 1 % or so to damping and curvature, the second nothing.
 ITERATIONS = 2
@@ -49,6 +66,8 @@ MEMORY_S = 20.0
 THIRD_DIFFERENCE = 6.0
 OUTLIER = 4.0
 SMALLEST_PUSH = 1e-9  # N m s^2; keeps ratios finite
+NOT_RIGHTED = np.array([True, True, True, False, False, True])
+"""Axes along which nothing but thrusters brings a vehicle back; roll and pitch have the hull."""
 
 
 class JointCorrection(NamedTuple):
@@ -57,6 +76,26 @@ class JointCorrection(NamedTuple):
     angle: Array  # rad
     rate: Array  # rad/s
     acceleration: Array  # rad/s^2
+
+
+def as_if_held(odometry: Odometry, tracking: TrackingError, is_controlled: Flags) -> Odometry:
+    """The vehicle as it would be without its error along axes that nothing brings it back along.
+
+    Args:
+        odometry: estimated state.
+        tracking: errors against the reference, body frame.
+        is_controlled: (6,) axes that the thrusters control.
+    """
+    gone = NOT_RIGHTED & ~is_controlled
+    if not gone.any():
+        return odometry
+    error, rate = np.where(gone, tracking.error, 0.0), np.where(gone, tracking.rate, 0.0)
+    return replace(
+        odometry,
+        position=odometry.position + quat_to_matrix(odometry.quaternion) @ error[:3],
+        quaternion=quat_multiply(odometry.quaternion, rotation_vector_to_quat(error[3:])),
+        nu=odometry.nu + rate,
+    )
 
 
 class EndEffectorCompensation:
@@ -195,8 +234,9 @@ def _demand(
         tool, _ = end_effector(model, position, quaternion, q + correction)
         jacobian = end_effector_jacobian(model, quaternion, q + correction)[:3].copy()
         inverse = _damped_inverse(jacobian[:, 6:].copy(), damping)
-        correction = correction + inverse @ (target - tool)
-        correction = np.minimum(np.maximum(correction, low), high)
+        asked = correction + inverse @ (target - tool)
+        correction = np.minimum(np.maximum(asked, low), high)
+    kept = _share_worth(jacobian[:, 6:].copy(), asked, correction)
     of_vehicle = jacobian[:, :6].copy()
     planned = end_effector_jacobian(model, desired_quaternion, q)[:3, :6].copy()
     rate = inverse @ (planned @ desired_nu - of_vehicle @ nu)
@@ -209,7 +249,18 @@ def _demand(
         recoil[i] = spread[i] @ pushed[:, i].copy()
         worth[i] = np.sqrt((jacobian[:, 6 + i] ** 2).sum())
         push[i] = np.sqrt((mass[3:6, 6 + i] ** 2).sum()) + SMALLEST_PUSH
-    return correction, rate, noise, recoil, worth, push
+    return kept * correction, kept * rate, noise, recoil, worth, push
+
+
+@exact_inner
+def _share_worth(jacobian: Array, asked: Array, bounded: Array) -> float:
+    """Share, 0 to 1, of the bounded correction (n,) that is asked for; 1 where no bound matters."""
+    lost = np.sqrt(((jacobian @ (asked - bounded)) ** 2).sum())
+    if lost == 0.0:
+        return 1.0
+    gained = np.sqrt(((jacobian @ bounded) ** 2).sum())
+    share = gained / (gained + lost)
+    return share * share * (3.0 - 2.0 * share)
 
 
 @exact_inner

@@ -6,11 +6,13 @@ from typing import ClassVar
 import numpy as np
 
 from uvms_control.arm_law import ArmLaw
+from uvms_control.compensation import as_if_held
 from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
 from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
 from uvms_control.reference import PlannedMotion, ReferenceSample
 from uvms_control.stability import StabilityMonitor
+from uvms_control.tracking_error import tracking_error
 from uvms_control.vehicle_law import VehicleLaw
 from uvms_core import checks
 from uvms_core.signals import (
@@ -122,7 +124,11 @@ class Controller:
             mass, nu_dot, wrench = self._vehicle_share(odometry, q, acts, planned, desired, dt)
         else:
             mass, nu_dot, wrench = mass_matrix(self._loaded.model, q), np.zeros(6), np.zeros(6)
-        effort = self.arm.step(odometry, desired, mass, nu_dot, dt)
+        held = odometry
+        if self._config.enabled and not self._axes.is_controlled.all():
+            tracking = tracking_error(odometry, desired)
+            held = as_if_held(odometry, tracking, self._axes.is_controlled)
+        effort = self.arm.step(odometry, desired, mass, nu_dot, dt, held)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 
     def _vehicle_share(

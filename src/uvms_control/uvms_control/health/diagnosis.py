@@ -93,8 +93,9 @@ class ThrusterDiagnosis:
         for name in self._belief.suspected:
             yield Trouble(WARN, self._suspicion(name))
         if (axes := self._missing.flags).any():
+            # A gust or a load beyond the thrusters, which may pass: nothing has failed.
             text = f"{_axes(axes)}: not achieved for more than {MISSING_S:g} s"
-            yield Trouble(ERROR, text)
+            yield Trouble(WARN, text)
         if (flags := self._saturated.flags).any():
             names = [name for name, one in zip(self._belief.names, flags, strict=True) if one]
             yield Trouble(WARN, f"{', '.join(names)} at the limit for more than {SATURATED_S:g} s")

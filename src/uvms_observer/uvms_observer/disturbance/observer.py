@@ -17,7 +17,7 @@ from uvms_core.signals import (
     to_seconds,
 )
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics import Model, build_model
+from uvms_dynamics import Model, build_model, thruster_matrix
 from uvms_dynamics.external_bandwidth import external_bandwidth
 from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
 from uvms_dynamics.payload import COLUMNS, LoadedModel
@@ -25,7 +25,7 @@ from uvms_observer.disturbance.external import follow_external, momentum_noise, 
 from uvms_observer.disturbance.model_parts import ModelParts
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
-from uvms_observer.health import ThrusterMonitor
+from uvms_observer.health import Handover, ThrusterMonitor
 from uvms_observer.payload import PayloadEstimator
 from uvms_observer.payload.fit import theta_of
 
@@ -199,6 +199,7 @@ class CombinedObserver(DisturbanceObserver):
         super().__init__(vehicle, config)
         self._estimator = PayloadEstimator(vehicle)
         self._monitor = ThrusterMonitor(vehicle)
+        self._handover = Handover(thruster_matrix(vehicle))
         self._allocation: Allocation | None = None
 
     def inform(self, allocation: Allocation | None) -> None:
@@ -209,11 +210,23 @@ class CombinedObserver(DisturbanceObserver):
         if (told := self._allocation) is not None:
             wrench = force[:6] - forces[:6] @ self._theta
             self._monitor.step(dt, wrench, NOT_KNOWN, told.thrust, told.effectiveness)
+            self._hand_over(force, told.effectiveness)
         if not (self._feels and self._estimator.step(dt, force, forces, noise)):
             return
         payload = self._estimator.payload
         if self._loaded.take(payload):
             self._theta = theta_of(np.array([payload.weight, *payload.position, payload.mass]))
+
+    def _hand_over(self, force: Array, counted: Array) -> None:
+        """Take what a new fault explains off the force of the interval (in place) and the filter.
+
+        counted (m,): shares with which the thrusters were counted.
+        """
+        if (fault := self._monitor.found) is not None:
+            self._filter[:, 0] += self._handover.remembered(fault, self._gain, counted)
+        explained = self._handover.of_interval(self._monitor.lagged, counted)
+        if explained is not None:
+            force[:6] += explained
 
     def _payload(self) -> Payload:
         return self._estimator.payload

@@ -1,5 +1,7 @@
 """Which thruster gives less than it is told, by the evidence of the last seconds."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from uvms_core.signals import Array, ThrusterHealth
@@ -32,6 +34,21 @@ SHARE_RANGE = (-0.2, 1.0)
 """Share of the command that may be missing: a thruster may give a fifth more than the file says."""
 
 
+@dataclass(frozen=True)
+class Fault:
+    """A verdict that is believed.
+
+    Attributes:
+        thruster: its number.
+        share: of its command that it lost beyond what was believed.
+        thrusts: (k,) its lagged thrusts since the onset, N, oldest first.
+    """
+
+    thruster: int
+    share: float
+    thrusts: Array
+
+
 class ThrusterMonitor:
     """Watches all thrusters of a vehicle.
 
@@ -40,6 +57,8 @@ class ThrusterMonitor:
 
     Attributes:
         health: as the last step found it; all whole before.
+        found: the fault that the last step came to believe, if any.
+        lagged: (m,) mean thrusts over the last interval, as commanded, N.
     """
 
     def __init__(self, vehicle: Vehicle) -> None:
@@ -52,6 +71,8 @@ class ThrusterMonitor:
         self._evidence = np.zeros((self._m, columns.COLUMNS))
         self._dt = 0.0
         self.health = ThrusterHealth(np.ones(self._m), self._sigma.copy())
+        self.found: Fault | None = None
+        self.lagged = np.zeros(self._m)
         self._start(0.0)
 
     def _start(self, dt: float) -> None:
@@ -81,7 +102,8 @@ class ThrusterMonitor:
         """
         if not self._dt / ANOTHER_PERIOD < dt < self._dt * ANOTHER_PERIOD:
             self._start(dt)
-        lagged = self._lag.step(dt, thrust)
+        self.found = None
+        self.lagged = lagged = self._lag.step(dt, thrust)
         whole = unexplained
         if believed.size:
             whole = unexplained - self._matrix @ ((1.0 - believed) * lagged)
@@ -116,9 +138,11 @@ class ThrusterMonitor:
 
     def _believe(self, verdict: Verdict) -> None:
         """Take a thruster's new share, and look at the rest from the fault's onset on."""
-        i = verdict.thruster
-        self._lost[i] = min(max(self._lost[i] + verdict.share, SHARE_RANGE[0]), SHARE_RANGE[1])
+        i, before = verdict.thruster, self._lost[verdict.thruster]
+        self._lost[i] = min(max(before + verdict.share, SHARE_RANGE[0]), SHARE_RANGE[1])
         self._sigma[i] = max(SEARCHED * verdict.sigma, LEAST_SIGMA)
+        since = self._thrusts[self._size - self._count + verdict.onset :, i].copy()
+        self.found = Fault(i, float(self._lost[i] - before), since)
         self._count = max(self._count - verdict.onset, 1)
         self._doubt()
 
