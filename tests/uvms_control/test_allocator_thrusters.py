@@ -88,8 +88,8 @@ def test_weak_thrusters_stay_out_of_their_gaps(cls):
 
 def test_a_share_that_is_none_is_refused():
     allocator = ThrustAllocator(VEHICLE, AllocatorConfig())
-    with pytest.raises(SignalError, match=r"effectiveness\[2\] is 1.2; it must be in 0 to 1"):
-        allocator.set_effectiveness(np.array([1.0, 1.0, 1.2, 1.0, 1.0, 1.0, 1.0]))
+    with pytest.raises(SignalError, match=r"effectiveness\[2\] is 1.3; it must be in 0 to 1.2"):
+        allocator.set_effectiveness(np.array([1.0, 1.0, 1.3, 1.0, 1.0, 1.0, 1.0]))
     with pytest.raises(SignalError, match=r"effectiveness\[0\] is nan"):
         allocator.set_effectiveness(np.array([np.nan] * 7))
     with pytest.raises(SignalError, match=r"shape \(2,\); it must have \(7,\)"):
