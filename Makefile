@@ -28,7 +28,7 @@ test: setup ## set up, then run all tests (some of them: ARGS="tests/uvms_planne
 bench: setup ## set up, then measure speed and quality, one JSON object a line
 	@$(BIN)/python benchmarks/run.py $(ARGS)
 
-field: setup ## set up, then run the trial field (a quarter of an hour on 2 cores) and write docs/trial-field.md
+field: setup ## set up, then run the trial field (twenty minutes on 2 cores) and write docs/trial-field.md
 	@$(BIN)/python -m uvms_bringup.field $(ARGS)
 
 faults: setup ## set up, then run all fault tests, the long ones too, and write their table into docs/faults.md

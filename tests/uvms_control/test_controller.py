@@ -9,12 +9,15 @@ from pydantic import ValidationError
 
 from uvms_control import ControlConfig, Controller, VehicleControlConfig
 from uvms_core.errors import SignalError
-from uvms_core.signals import Wrench
+from uvms_core.signals import Wrench, to_nanoseconds
 from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.joint_prediction import joint_age_limit
 
 VEHICLE = load_vehicle()
 STOWED = np.radians([0.0, 0.0, 135.0, 0.0])
 TICK = 50_000_000
+JOINT_AGE_LIMIT_S = joint_age_limit(VEHICLE, 0.05)
+TOO_OLD = TICK - to_nanoseconds(JOINT_AGE_LIMIT_S) - 1
 
 
 def inputs(stamp=TICK):
@@ -51,8 +54,8 @@ def bad_inputs():
         "joint_states.velocity[swing] is nan; it must be finite",
     )
     yield (
-        (odometry, replace(joints, stamp=TICK - 600_000_000), disturbance, reference),
-        f"joint_states: stamp {TICK - 600_000_000} ns; it must lie within 0.5 s before the "
+        (odometry, replace(joints, stamp=TOO_OLD), disturbance, reference),
+        f"joint_states: stamp {TOO_OLD} ns; it must lie within {JOINT_AGE_LIMIT_S:g} s before the "
         f"odometry's, {TICK} ns",
     )
     yield (
