@@ -23,7 +23,7 @@ def asked(shift):
 @pytest.mark.parametrize("way", [(1, 0, 0), (-1, 0, 0), (0, 1, 0), (0, 0, -1), (0.6, 0.6, 0.5)])
 def test_a_vehicle_that_is_carried_away_takes_the_arm_along(way):
     reach = max(asked(0.01 * k * np.array(way)) for k in range(1, 41))
-    assert asked(5.0 * np.array(way)) < 0.02 * reach
+    assert asked(5.0 * np.array(way)) < 0.03 * reach
     assert asked(1.5 * np.array(way)) < 0.2 * reach
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from uvms_core.signals import Array, Reference, to_nanoseconds, to_seconds
 from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_dynamics.kernels.products import product, squared, transposed_product
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -129,11 +130,11 @@ def planned_row(stamps: Array, times: Array, table: Array, since: int) -> Array:
     _hermite(start[angles], end[angles], start[rates], end[rates], s, h, row[angles], row[rates])
     quaternion = row[QUATERNION:NU]
     _hermite_attitude(start, end, s, h, quaternion, row[NU + 3 : NU_DOT])
-    begins = quat_to_matrix(start[QUATERNION:NU]) @ start[NU : NU + 3]
-    ends = quat_to_matrix(end[QUATERNION:NU]) @ end[NU : NU + 3]
+    begins = product(quat_to_matrix(start[QUATERNION:NU]), start[NU : NU + 3])
+    ends = product(quat_to_matrix(end[QUATERNION:NU]), end[NU : NU + 3])
     velocity = np.empty(3)
     _hermite(start[:QUATERNION], end[:QUATERNION], begins, ends, s, h, row[:QUATERNION], velocity)
-    row[NU : NU + 3] = quat_to_matrix(quaternion).T @ velocity
+    row[NU : NU + 3] = transposed_product(quat_to_matrix(quaternion), velocity)
     return row
 
 
@@ -157,12 +158,12 @@ def _hermite_attitude(
     """Attitude and angular velocity (body frame) between the samples of two rows."""
     first = start[QUATERNION:NU]
     turn = quat_to_rotation_vector(quat_multiply(quat_conjugate(first), end[QUATERNION:NU]))
-    rate = inverse_right_jacobian(turn) @ end[NU + 3 : NU_DOT]
+    rate = product(inverse_right_jacobian(turn), end[NU + 3 : NU_DOT])
     phi, phi_dot = np.empty(3), np.empty(3)
     _hermite(np.zeros(3), turn, start[NU + 3 : NU_DOT], rate, s, h, phi, phi_dot)
     turned = quat_multiply(first, rotation_vector_to_quat(phi))
     quaternion[:] = turned / np.sqrt(np.sum(turned**2))
-    omega[:] = right_jacobian(phi) @ phi_dot
+    omega[:] = product(right_jacobian(phi), phi_dot)
 
 
 @exact_kernel
@@ -175,10 +176,10 @@ def right_jacobian(phi: Array) -> Array:
     angle = np.sqrt(np.sum(phi**2))
     cross = skew(phi)
     if angle < SMALL_ANGLE:
-        return np.eye(3) - 0.5 * cross + cross @ cross / 6.0
+        return np.eye(3) - 0.5 * cross + squared(cross) / 6.0
     first = (1.0 - np.cos(angle)) / angle**2
     second = (angle - np.sin(angle)) / angle**3
-    return np.eye(3) - first * cross + second * cross @ cross
+    return np.eye(3) - first * cross + second * squared(cross)
 
 
 @exact_kernel
@@ -189,4 +190,4 @@ def inverse_right_jacobian(phi: Array) -> Array:
     second = 1.0 / 12.0
     if angle >= SMALL_ANGLE:
         second = (1.0 - 0.5 * angle / np.tan(0.5 * angle)) / angle**2
-    return np.eye(3) + 0.5 * cross + second * cross @ cross
+    return np.eye(3) + 0.5 * cross + second * squared(cross)

@@ -35,6 +35,7 @@ import numpy as np
 from uvms_control.errors import ControlSetupError
 from uvms_core.signals import Array, Stability
 from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_dynamics.kernels.products import inner_product
 
 EPSILON = 0.5
 """Of its bound min D; the middle, where neither of the two parts of -V_dot is small."""
@@ -120,7 +121,7 @@ def stability_figures(
             if controlled[k]:
                 block[i, k] = inertia[i, k]
                 kinetic += rate[i] * inertia[i, k] * rate[k]
-    size = load @ _solved(block, load)
+    size = inner_product(load, _solved(block, load))
     demand = np.sqrt(max(kinetic, 0.0) * max(size, 0.0))
     return value, change, demand, supply
 

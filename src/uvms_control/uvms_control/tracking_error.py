@@ -7,6 +7,7 @@ import numpy as np
 from uvms_control.reference import ReferenceSample
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_dynamics.kernels.products import product, transposed_product
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
     quat_multiply,
@@ -56,11 +57,11 @@ def errors(
     turn = quat_multiply(quat_conjugate(quaternion), desired_quaternion)
     R_body_desired = quat_to_matrix(turn)
     error, rate, acceleration = np.empty(6), np.empty(6), np.empty(6)
-    error[:3] = R_world_body.T @ (desired_position - position)
+    error[:3] = transposed_product(R_world_body, desired_position - position)
     error[3:] = quat_to_rotation_vector(turn)
-    v, omega = R_body_desired @ desired_nu[:3], R_body_desired @ desired_nu[3:]
+    v, omega = product(R_body_desired, desired_nu[:3]), product(R_body_desired, desired_nu[3:])
     rate[:3], rate[3:] = v - nu[:3], omega - nu[3:]
     slip = skew(rate[3:])
-    acceleration[:3] = R_body_desired @ desired_nu_dot[:3] + slip @ v
-    acceleration[3:] = R_body_desired @ desired_nu_dot[3:] + slip @ omega
+    acceleration[:3] = product(R_body_desired, desired_nu_dot[:3]) + product(slip, v)
+    acceleration[3:] = product(R_body_desired, desired_nu_dot[3:]) + product(slip, omega)
     return error, rate, acceleration

@@ -29,6 +29,7 @@ from uvms_control.tracking_error import errors
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import Model, hull_bias_wrench, mass_matrix, restoring_wrench
 from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_dynamics.kernels.products import product
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 
 BRAKING = 0.5
@@ -149,7 +150,7 @@ def vehicle_step(
         acceleration,
         known,
     )
-    needed = inertia @ acceleration + hull_bias_wrench(model, nu) - disturbance
+    needed = product(inertia, acceleration) + hull_bias_wrench(model, nu) - disturbance
     weight, epsilon, observed = monitor
     given = wrench - lacking
     figures = stability_figures(error, rate, inertia, needed, given, weight, epsilon, observed)
@@ -182,8 +183,8 @@ def law_wrench(
         if is_controlled[i]:
             feedback = _feedback(error[i], rate[i], stiffness[i], damping[i], amplitude[i])
             acceleration[i] = reference_acceleration[i] + share[i] * feedback
-    wrench = mass @ acceleration + hull_bias_wrench(model, nu + rate) - known
-    return passing @ wrench
+    wrench = product(mass, acceleration) + hull_bias_wrench(model, nu + rate) - known
+    return product(passing, wrench)
 
 
 @exact_kernel
