@@ -5,7 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from uvms_control import ControlConfig
+from uvms_control import ControlConfig, GainConfig
 from uvms_control.controller import Controller
 from uvms_control.design import (
     Axis,
@@ -208,7 +208,16 @@ def test_a_hull_that_turns_over_is_held(righting):
 
 
 def test_limits_that_nothing_keeps_are_refused():
-    config = ControlConfig(gains={"noise_share": 1e-7})
-    controller = Controller(vehicle_of("reference_auv"), config)
-    with pytest.raises(ControlSetupError, match=r"no bandwidth of \w+ keeps the margins; raise"):
-        controller.prepare(PERIOD)
+    config = ControlConfig(gains={"delay_margin_periods": 20.0})
+    upside_down = load_vehicle(overrides={"hull.cb_m": [0.0, 0.0, 0.03]})
+    with pytest.raises(ControlSetupError, match=r"no bandwidth of \w+ keeps the margins; lower"):
+        Controller(upside_down, config).prepare(PERIOD)
+
+
+def test_poor_sensors_cost_more_thrust_and_not_the_control():
+    """Noise that takes more than its share at any bandwidth: there are gains all the same."""
+    vehicle = load_vehicle(overrides={"sensors.dvl.noise_m_s": 5.0})
+    for config in (GainConfig(), GainConfig(noise_share=1e-6)):
+        designs = axis_designs(vehicle, PERIOD, config)
+        assert all(each.gains.stiffness > 0.0 for each in designs)
+    assert designs[0].limited_by == "noise"

@@ -6,7 +6,7 @@ accelerations, and the law multiplies them by M(q): they mean the same whatever 
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import sqrt
 
 import numpy as np
@@ -107,18 +107,30 @@ def _least(designs: list[AxisDesign | None], k: int) -> AxisDesign | None:
     least = min(found, key=lambda each: each.gains.stiffness)
     if least.gains.stiffness <= 0.0:
         raise ControlSetupError(
-            f"control.gains: no bandwidth of {AXES[k]} keeps the margins; raise"
-            " control.gains.noise_share, lower control.gains.delay_margin_periods, or set"
-            " control.gains.bandwidth_rad_s"
+            f"control.gains: no bandwidth of {AXES[k]} keeps the margins; lower"
+            " control.gains.delay_margin_periods, or set control.gains.bandwidth_rad_s"
         )
     return least
+
+
+def _by_rule(axis: Axis, limits: Limits) -> AxisDesign:
+    """The largest bandwidth; where sensors are so poor that there is none, noise may cost more.
+
+    A vehicle that is held by noisy thrusters is better off than one that nobody holds.
+    """
+    share = limits.noise_share
+    while True:
+        found = largest_bandwidth(axis, replace(limits, noise_share=share))
+        if found.gains.stiffness > 0.0 or share >= 1.0:
+            return found
+        share = min(2.0 * share, 1.0)
 
 
 def _design(axis: Axis | None, k: int, limits: Limits, config: GainConfig) -> AxisDesign | None:
     if axis is None:
         return None
     if config.bandwidth_rad_s is None:
-        return largest_bandwidth(axis, limits)
+        return _by_rule(axis, limits)
     bandwidth = config.bandwidth_rad_s[k]
     ratio = 1.0 if config.damping_ratio is None else config.damping_ratio[k]
 
