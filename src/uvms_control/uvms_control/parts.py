@@ -12,7 +12,7 @@ from uvms_core.diagnostics import Trouble
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench, to_seconds
-from uvms_core.tick_gate import Covering, Delayed, Previous, Same, Tick
+from uvms_core.tick_gate import Companion, CompanionBefore, Covering, Delayed, Same, Tick
 from uvms_core.vehicle import Vehicle
 
 
@@ -30,9 +30,9 @@ class ControllerPart(Part):
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Delayed(),
             topics.DISTURBANCE: Same(),
-            topics.DISTURBANCE_BUDGET: Same(),
+            topics.DISTURBANCE_BUDGET: Companion(),
             topics.REFERENCE: Covering(),
-            topics.ALLOCATION: Previous(period),
+            topics.ALLOCATION: CompanionBefore(period),
         }
 
     def step(self, tick: Tick) -> Iterator[Output]:
@@ -78,7 +78,7 @@ class AllocatorPart(Part):
         self.thrusters = Thrusters(vehicle, config.effectiveness)
         self.inputs = {
             topics.WRENCH_COMMAND: Same(),
-            topics.DISTURBANCE_BUDGET: Previous(period),
+            topics.DISTURBANCE_BUDGET: CompanionBefore(period),
         }
 
     def step(self, tick: Tick) -> Iterator[Output]:

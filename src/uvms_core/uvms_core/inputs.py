@@ -27,17 +27,23 @@ _STAMP = itemgetter(0)
 class Input(ABC):
     """One stamped input; the subclasses define when it is complete for a tick."""
 
+    is_companion = False
+    """Whether its writer may leave it out."""
+
     def __init__(self) -> None:
         self._items: deque[tuple[int, Any]] = deque(maxlen=DEPTH)
         self._excused: list[int] = []
+        self._has_come = False
 
     def reset(self) -> None:
         """Forget everything: time starts over."""
         self._items.clear()
         self._excused.clear()
+        self._has_come = False
 
     def push(self, stamp: int, value: Any) -> bool:
         """Store a value; one that is out of order is put in its place. False for a repeated one."""
+        self._has_come = True
         items = self._items
         if not items or stamp > items[-1][0]:
             items.append((stamp, value))
@@ -190,6 +196,34 @@ class Previous(Input):
     def take(self, stamp: int) -> Any:
         """The newest value before the tick, None at the first."""
         return super().take(stamp - 1)
+
+
+class Companion(Same):
+    """As `Same`, of what nobody need publish: waited for once a first value has come.
+
+    It tells more about another input, so that a writer of somebody else's may leave it out. Before
+    its first value there is nothing to tell, so that it does not matter when that comes.
+    """
+
+    is_companion = True
+
+    def complete(self, stamp: int) -> bool:
+        """Whether it has arrived, is excused, or nobody publishes it."""
+        return not self._has_come or super().complete(stamp)
+
+    def known(self, stamp: int) -> bool:
+        """Always: it may be left out."""
+        return True
+
+
+class CompanionBefore(Previous):
+    """As `Previous`, of what nobody need publish; see `Companion`."""
+
+    is_companion = True
+
+    def complete(self, stamp: int) -> bool:
+        """Whether it has arrived, is excused, or nobody publishes it."""
+        return not self._has_come or super().complete(stamp)
 
 
 class Periodic(Input):

@@ -12,10 +12,23 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from uvms_core.inputs import KEEP, Covering, Delayed, Input, Periodic, Previous, Same, held
+from uvms_core.inputs import (
+    KEEP,
+    Companion,
+    CompanionBefore,
+    Covering,
+    Delayed,
+    Input,
+    Periodic,
+    Previous,
+    Same,
+    held,
+)
 
 __all__ = [
     "KEEP",
+    "Companion",
+    "CompanionBefore",
     "Covering",
     "Delayed",
     "Input",
@@ -151,7 +164,9 @@ class TickGate:
     def required(self) -> tuple[str, ...]:
         """Names of the inputs without which there is never a tick."""
         return tuple(
-            name for name, item in self._inputs.items() if not isinstance(item, Periodic | Previous)
+            name
+            for name, item in self._inputs.items()
+            if not isinstance(item, Periodic | Previous) and not item.is_companion
         )
 
     def waiting(self) -> list[str]:

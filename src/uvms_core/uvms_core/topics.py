@@ -31,6 +31,7 @@ __all__ = [
     "ALL",
     "BODY_FRAME",
     "BY_NAME",
+    "COMPANIONS",
     "CONTROLLER",
     "DISTURBANCE_OBSERVER",
     "ENCODERS",
@@ -128,6 +129,9 @@ ROBOT_DESCRIPTION = Topic("robot_description", "std_msgs/msg/String", qos=LATCHE
 DIAGNOSTICS = Topic("/diagnostics", "diagnostic_msgs/msg/DiagnosticArray", diagnostics.Status)
 ROSOUT = Topic("/rosout", "rcl_interfaces/msg/Log", qos=Qos(transient_local=True))
 """Of every node of ROS, not of the loop alone; recorded where there is a graph."""
+COMPANIONS = frozenset({DISTURBANCE_BUDGET, ALLOCATION})
+"""They tell more about the disturbance and the achieved wrench: whoever puts a node of their own in
+the place of the observer or the allocator may leave them out (`tick_gate.Companion`)."""
 SENSOR_GAPS = Topic(
     f"{SENSORS}gaps", "uvms_msgs/msg/SensorGaps", signals.SensorGaps, BODY_FRAME, is_occasional=True
 )

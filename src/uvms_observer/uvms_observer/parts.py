@@ -11,7 +11,7 @@ from uvms_core.part import Output, Part
 from uvms_core.plugin import create
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import DisturbanceBudget, Odometry, Wrench, to_seconds
-from uvms_core.tick_gate import KEEP, Delayed, Previous, Same, Tick
+from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 from uvms_observer.arrivals import sensor_inputs, used_sensors
 from uvms_observer.disturbance import ObserverConfig
@@ -148,7 +148,7 @@ class ObserverPart(Part):
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Delayed(),
             topics.WRENCH_ACHIEVED: Previous(period),
-            topics.ALLOCATION: Previous(period),
+            topics.ALLOCATION: CompanionBefore(period),
         }
 
     def step(self, tick: Tick) -> Iterator[Output]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 from uvms_core import topics
 from uvms_core.part import Output, Part
 from uvms_core.signals import JointStates, Odometry, to_nanoseconds
-from uvms_core.tick_gate import Delayed, Previous, Same, Tick, held
+from uvms_core.tick_gate import CompanionBefore, Delayed, Same, Tick, held
 from uvms_core.vehicle import Vehicle
 from uvms_planner.config import PlannerConfig
 from uvms_planner.planner import MotionPlanner
@@ -29,8 +29,8 @@ class PlannerPart(Part):
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Delayed(),
-            topics.DISTURBANCE_BUDGET: Previous(period),
-            topics.ALLOCATION: Previous(period),
+            topics.DISTURBANCE_BUDGET: CompanionBefore(period),
+            topics.ALLOCATION: CompanionBefore(period),
         }
         self.plan: PlannerStep | None = None
         self._state: tuple[Odometry, JointStates] | None = None

@@ -93,6 +93,7 @@ class UvmsNode(Node):
         self._topics = self.graph[name]
         # What some node of the loop reads: a run cannot start before it has a subscriber.
         self._needed = {t for n in self.graph.values() for t in n.inputs} - {topics.CLOCK}
+        self._needed -= topics.COMPANIONS
         self._outputs: dict[Topic, Publisher] = {}
         self._sent: dict[str, int] = {}  # messages by topic's name, for whoever counts the lost
         self._senders = {topic: self._sender(topic) for topic in self._topics.outputs}
@@ -347,7 +348,7 @@ class UvmsNode(Node):
         lacks = []
         for topic, subscription in self._receivers.items():
             there, found = self.count_publishers(topic.name), subscription.get_publisher_count()
-            if found < max(there, 0 if topic.is_occasional else 1):
+            if found < max(there, 0 if topic.is_occasional or topic in topics.COMPANIONS else 1):
                 lacks.append(_lack(nobody_publishes(topic), there, found))
         for topic, publisher in self._outputs.items():
             there, found = self.count_subscribers(topic.name), publisher.get_subscription_count()
