@@ -83,7 +83,8 @@ def schedule(
         LogError: the log lacks one of the node's inputs, or all of its outputs.
     """
     wanted = wanted or topics.NODES[node]
-    inputs = [run.full_name(topic) for topic in wanted.inputs]
+    there = [topic for topic in wanted.inputs if topic not in topics.COMPANIONS or run.has(topic)]
+    inputs = [run.full_name(topic) for topic in there]
     outputs = [run.full_name(topic) for topic in wanted.outputs]
     lacking = [name for name in inputs if name not in run.topics]
     if lacking:
