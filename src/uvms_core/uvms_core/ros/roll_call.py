@@ -62,7 +62,8 @@ class RollCall:
             return [
                 nobody_publishes(topic)
                 for topic in self._graph[role].outputs
-                if topics.readers(topic, self._graph) - foreign
+                if topic not in topics.COMPANIONS
+                and topics.readers(topic, self._graph) - foreign
                 and not self._node.count_publishers(topic.name)
             ]
         if self._answers[role]:
