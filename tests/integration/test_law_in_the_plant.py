@@ -63,10 +63,11 @@ def test_a_gust_rolls_the_vehicle_less_than_without_control(external):
     assert moved < drift
 
 
-def test_waves_are_worse_by_the_paper_s_law_than_without_control_and_better_by_the_default():
+def test_in_waves_the_default_law_is_better_than_the_paper_s_and_than_none():
     default, paper, free = (
         run("hover", 25.0, *WAVES, setting)
         for setting in ("control=default", "control=paper", "control=off")
     )
-    assert default[0] < free[0] < paper[0]
+    assert default[0] < min(free[0], paper[0])
     assert default[1] < 0.2 * free[1]
+    assert default[1] < 0.5 * paper[1]

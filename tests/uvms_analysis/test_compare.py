@@ -63,7 +63,7 @@ def test_the_controller_gets_all_inputs_of_a_tick(logs):
         names = {"/clock", "/odometry", "/joint_states", "/disturbance", "/disturbance/budget"}
         names |= {"/allocation"} | ({"/reference"} if number % 10 == 0 else set())
         assert {name for name, _ in tick.inputs} == names
-        assert tick.outputs == {"/wrench_command": 1, "/joint_command": 1}
+        assert tick.outputs == {"/wrench_command": 1, "/joint_command": 1, "/control/stability": 1}
 
 
 def test_references_belong_to_the_tick_one_step_before(logs):

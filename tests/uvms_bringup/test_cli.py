@@ -73,7 +73,7 @@ PERIOD = "is not a multiple of"
         (
             ["--set", "control.obsrver=false"],
             f"{HOVER}control.obsrver: Extra inputs are not permitted; known names here:"
-            " arm, compensate_vehicle_motion, compensation, enabled, law, observer, parameters,"
+            " arm, compensate_vehicle_motion, compensation, enabled, gains, law, observer, parameters,"
             " vehicle",
         ),
         (
