@@ -73,8 +73,8 @@ PERIOD = "is not a multiple of"
         (
             ["--set", "control.obsrver=false"],
             f"{HOVER}control.obsrver: Extra inputs are not permitted; known names here:"
-            " arm, compensate_vehicle_motion, compensation, enabled, gains, law, observer, parameters,"
-            " vehicle",
+            " arm, compensate_vehicle_motion, compensation, enabled, gains, law, observer,"
+            " parameters, vehicle",
         ),
         (
             ["--set", "plant.initial_joints_deg=[0]"],

@@ -68,16 +68,42 @@ def controlled_axes(matrix: Array, lower: Array, upper: Array, constants: Array)
     authority, lag = np.zeros(6), np.zeros(6)
     if not taken:
         return ControlledAxes(np.zeros(6, dtype=np.bool_), np.zeros((6, 6)), authority, lag)
-    inverse[:, taken] = np.linalg.pinv(shares[taken])
+    inverse[:, taken] = _least_norm_inverse(shares[taken])
     used = np.abs(inverse)
     authority[taken] = 1.0 / used[:, taken].max(axis=0)
     acts = used > 1e-6 * np.maximum(used.max(axis=0), 1e-300)
     lag[taken] = np.max(acts * constants[:, None], axis=0)[taken]
     is_controlled = np.zeros(6, dtype=np.bool_)
     is_controlled[taken] = True
-    passing = shares @ inverse
+    passing = _product(shares, inverse)
     passing[taken] = np.eye(6)[taken]
     return ControlledAxes(is_controlled, passing, authority, lag)
+
+
+def _least_norm_inverse(rows: Array) -> Array:
+    """Right inverse (m, k) of independent rows (k, m) with the least norm: R^T (R R^T)^-1.
+
+    By Gauss and Jordan, and not by a library: LAPACK's last bit depends on where its operands lie
+    in memory, so that a run on the graph would not be that in the process bit for bit.
+    """
+    k = len(rows)
+    table = np.hstack((_product(rows, rows.T), np.eye(k)))
+    for i in range(k):
+        pivot = i + int(np.argmax(np.abs(table[i:, i])))
+        table[[i, pivot]] = table[[pivot, i]]
+        table[i] = table[i] / table[i, i]
+        for j in range(k):
+            if j != i:
+                table[j] = table[j] - table[j, i] * table[i]
+    return _product(rows.T, table[:, k:])
+
+
+def _product(one: Array, other: Array) -> Array:
+    """Matrix product whose sums run in a fixed order."""
+    out = np.zeros((one.shape[0], other.shape[1]))
+    for k in range(one.shape[1]):
+        out += one[:, k : k + 1] * other[k]
+    return out
 
 
 def _independent(shares: Array) -> list[int]:

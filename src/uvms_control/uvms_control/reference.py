@@ -48,8 +48,9 @@ class PlannedMotion:
 
     def __init__(self, reference: Reference) -> None:
         self._begin, self._end = reference.stamp, reference.end
-        self._times = np.ascontiguousarray(reference.times, dtype=np.float64)
-        self._stamps = np.array([to_nanoseconds(float(t)) for t in self._times], dtype=np.int64)
+        self._stamps = np.array([to_nanoseconds(float(t)) for t in reference.times], np.int64)
+        # As a message has them, in whole nanoseconds: on the graph and in the process the same.
+        self._times = np.array([to_seconds(int(stamp)) for stamp in self._stamps])
         self._n = reference.q.shape[1]
         self._table = np.hstack(
             (
