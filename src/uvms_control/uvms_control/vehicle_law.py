@@ -22,7 +22,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uvms_control.controlled_axes import ControlledAxes, Flags
-from uvms_control.design.gains import ENGAGES_IN, VehicleGains
+from uvms_control.design.gains import VehicleGains
 from uvms_control.reference import END_EFFECTOR, JOINTS, NU, NU_DOT, POSITION, QUATERNION
 from uvms_control.stability import StabilityMonitor, stability_figures
 from uvms_control.tracking_error import errors
@@ -32,6 +32,8 @@ from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.kernels.products import product
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 
+ENGAGES_IN = 2.0
+"""The feedback comes up within so many times 1 / bandwidth."""
 BRAKING = 0.5
 """Share of the law's greatest acceleration with which the vehicle brakes when it returns."""
 

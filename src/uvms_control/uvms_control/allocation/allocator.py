@@ -29,7 +29,6 @@ from uvms_control.allocation.saturation import Shortage
 from uvms_control.allocation.solver import Solver
 from uvms_control.allocator_config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
-from uvms_control.health.belief import GREATEST_SHARE, LEAST_SHARE
 from uvms_control.vehicle_data import least_thrusts, thruster_lags, thruster_limits
 from uvms_core import checks
 from uvms_core.errors import SignalError
@@ -39,6 +38,9 @@ from uvms_dynamics import thruster_matrix
 from uvms_dynamics.kernels.jit import exact_kernel
 
 A = TypeVar("A", bound="ThrustAllocator")
+LEAST_SHARE, GREATEST_SHARE = 0.0, 1.2
+"""Share of its command that a thruster may be said to give: 0 dead, 1 whole; a fifth more than the
+vehicle file says is within what its curve and battery leave open."""
 # A thrust this close to its bound (share of the limit) counts as saturated.
 SATURATION_MARGIN = 1e-9
 # Bisections of the scale when the direction is preserved: 2^-40 of the wrench.

@@ -24,8 +24,6 @@ from uvms_core.vehicle.plausible.stability import postures
 
 ATTITUDE = slice(3, 5)
 """Roll and pitch, along which the arm's weight acts."""
-ENGAGES_IN = 2.0
-"""The feedback comes up within so many times 1 / bandwidth."""
 
 
 @dataclass(frozen=True)

@@ -6,13 +6,11 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
+from uvms_control.allocation.allocator import GREATEST_SHARE, LEAST_SHARE
 from uvms_control.errors import ControlSetupError
 from uvms_core.errors import SignalError
 from uvms_core.signals import ThrusterHealth
 
-LEAST_SHARE, GREATEST_SHARE = 0.0, 1.2
-"""Share of its command that a thruster may be said to give: 0 dead, 1 whole; a fifth more than the
-vehicle file says is within what its curve and battery leave open."""
 LEAST_LOSS = 0.25
 """Lost share from which an estimate is believed. Less is what the vehicle file does not know of a
 healthy thruster, and the external wrench makes up for it."""
