@@ -82,7 +82,10 @@ class Acknowledgement:
             for role, own in graph.items()
             if role != topics.PLANT
             for topic in own.outputs
-            if topic is not topics.REFERENCE and _counts(topic, graph, foreign)
+            if topic is not topics.REFERENCE
+            and not topic.is_occasional
+            and not (role in foreign and topic in topics.COMPANIONS)
+            and _counts(topic, graph, foreign)
         ]
         self._answers = [topic.name for topic in (*answers, *further)]
         self._period = period
