@@ -1,4 +1,4 @@
-"""Failed thrusters, lag and the record of shortages, for either method of allocation."""
+"""Failed thrusters and lag, for either method of allocation."""
 
 import numpy as np
 import pytest
@@ -152,21 +152,3 @@ def test_a_lost_command_does_not_change_the_compensation():
             assert allocator.matrix @ thrust == pytest.approx(
                 [3.0 + k, 1.0, 2.0, 0.1, 0.5, 0.3], abs=0.02
             )
-
-
-@pytest.mark.parametrize("window", [1.0, 5.0])
-def test_the_record_says_what_was_short_for_how_long(window):
-    allocator = ThrustAllocator(
-        VEHICLE, AllocatorConfig(shortage_window_s=window, lag_compensation=0.0)
-    )
-    surge = [200.0] * 20 + [10.0] * 5 + [200.0] * 15
-    for k, force in enumerate(surge):
-        allocator.step(at(k, [force, 0.0, 0.0, 0.0, 0.0, 0.0]))
-    seen = surge[-round(window / PERIOD) :]
-    expected = np.mean(np.array(seen) > 98.0)
-    assert allocator.shortage.thruster_share == pytest.approx([expected] + [0.0] * 6)
-    assert allocator.shortage.axis_share == pytest.approx([expected] + [0.0] * 5)
-    assert allocator.shortage.thruster_s == pytest.approx([15 * PERIOD] + [0.0] * 6)
-    assert allocator.shortage.axis_s[0] == pytest.approx(15 * PERIOD)
-    allocator.reset()
-    assert not allocator.shortage.thruster_share.any()

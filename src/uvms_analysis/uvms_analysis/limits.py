@@ -15,6 +15,9 @@ SATURATED_SHARE = 0.5
 SATURATED_S = 30.0
 """Some thruster at its limit in more than this share of the ticks, or for so long without a break:
 the vehicle then goes where the water takes it, since its thrusters turn round within 0.5 s."""
+SATURATED_LEAST_S = 2.0
+"""The share counts from so much time at a limit on: of a run of two seconds more than half may be
+the beginning of a motion."""
 
 NEAR_SHARE = 0.5
 """Share of the time for which whatever has a place must be near it."""
@@ -93,7 +96,9 @@ def saturation(run: Analysis) -> str:
     saturated: NDArray[np.bool_] = np.any(run.allocation.saturated, axis=1)
     share = float(np.mean(saturated))
     longest = _longest(saturated, run.allocation.time)
-    if share <= SATURATED_SHARE and longest <= SATURATED_S:
+    time = run.allocation.time
+    spent = share * float(time[-1] - time[0])
+    if (share <= SATURATED_SHARE or spent < SATURATED_LEAST_S) and longest <= SATURATED_S:
         return ""
     return (
         f"thrusters at their limits in {share:.0%} of the ticks, for up to {longest:.1f} s without"

@@ -61,13 +61,6 @@ class AllocatorConfig(PluginConfig):
         " wanted thrust; 1: it is there at the end of the control period; true and false are 1 and"
         " 0. weighted_least_squares makes up for none",
     )
-    shortage_window_s: float = Field(
-        default=5.0,
-        gt=0.0,
-        le=60.0,
-        description="how far back the record reaches of thrusters at their limits and axes that"
-        " fall short, s",
-    )
     effectiveness: dict[str, float] = Field(
         default_factory=dict,
         description="share of its command that a thruster gives, by its name, as the user knows it"

@@ -1,7 +1,7 @@
 """The controller of vehicle and arm: one tick from estimated state and reference to commands."""
 
 from collections.abc import Mapping
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 
@@ -57,7 +57,7 @@ class Controller:
         self._vehicle = vehicle
         self._joint_names = vehicle.joint_names
         self._loaded = LoadedModel(build_model(vehicle))
-        self._law = VehicleLaw()
+        self._law = self._make_law(config)
         self._axes = axes_of(vehicle)
         self._effectiveness = np.empty(0)
         self._gains = NO_GAINS
@@ -66,6 +66,10 @@ class Controller:
         self.arm = ArmLaw(vehicle, self._loaded, config)
         self._budget: DisturbanceBudget | None = None
         self.reset()
+
+    def _make_law(self, config: ControlConfig) -> Any:
+        """The vehicle's law; it has `step` and `reset`."""
+        return VehicleLaw()
 
     def prepare(self, period: float) -> None:
         """Work out the gains for a control period in s.

@@ -15,7 +15,6 @@ from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import tracking_error
 from uvms_control.vehicle_controller import VehicleController
 from uvms_core.signals import Array, Odometry
-from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.plausible.stability import postures
 from uvms_core.vehicle.postures import STOWED
 from uvms_dynamics import hull_bias_wrench, mass_matrix
@@ -30,10 +29,14 @@ class PaperController(Controller):
 
     ignores: ClassVar[Mapping[str, str]] = {"gains": "the law default; this one has vehicle"}
 
-    def __init__(self, vehicle: Vehicle, config: ControlConfig):
-        """`vehicle` from `uvms_core.vehicle.load_vehicle`."""
-        super().__init__(vehicle, config)
-        self.vehicle = VehicleController(self._loaded.model, config.vehicle)
+    def _make_law(self, config: ControlConfig) -> VehicleController:
+        return VehicleController(self._loaded.model, config.vehicle)
+
+    @property
+    def vehicle(self) -> VehicleController:
+        """The vehicle's law."""
+        law: VehicleController = self._law
+        return law
 
     def prepare(self, period: float) -> None:
         """Check the slopes near the reference for a control period in s, with the arm stowed.
@@ -52,12 +55,6 @@ class PaperController(Controller):
         controlled = self._axes.is_controlled
         self._monitor = StabilityMonitor(law.stiffness * controlled, law.damping * controlled)
         self.arm.prepare(period)
-
-    def reset(self) -> None:
-        """Return to the state before the first step."""
-        super().reset()
-        if hasattr(self, "vehicle"):
-            self.vehicle.reset()
 
     def _vehicle_share(
         self,

@@ -206,7 +206,7 @@ def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:
             (DISTURBANCE, DISTURBANCE_BUDGET),
         ),
         MOTION_PLANNER: NodeTopics(
-            (CLOCK, ODOMETRY, JOINT_STATES, DISTURBANCE_BUDGET, ALLOCATION), (REFERENCE,), ACTIONS
+            (CLOCK, ODOMETRY, JOINT_STATES, DISTURBANCE_BUDGET), (REFERENCE,), ACTIONS
         ),
         CONTROLLER: NodeTopics(
             (

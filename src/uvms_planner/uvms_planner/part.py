@@ -30,7 +30,6 @@ class PlannerPart(Part):
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Delayed(),
             topics.DISTURBANCE_BUDGET: CompanionBefore(period),
-            topics.ALLOCATION: CompanionBefore(period),
         }
         self.plan: PlannerStep | None = None
         self._state: tuple[Odometry, JointStates] | None = None

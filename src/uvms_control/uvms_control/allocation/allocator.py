@@ -25,7 +25,6 @@ from uvms_control.allocation.gap import ThrustGap
 from uvms_control.allocation.lag import LagCompensation
 from uvms_control.allocation.least_squares import BoundedLeastSquares, box_of
 from uvms_control.allocation.lexicographic import AXES, LexicographicLeastSquares
-from uvms_control.allocation.saturation import Shortage
 from uvms_control.allocation.solver import Solver
 from uvms_control.allocator_config import AllocatorConfig
 from uvms_control.errors import ControlSetupError
@@ -59,7 +58,6 @@ class ThrustAllocator:
 
     Attributes:
         effectiveness: (m,) share of its command that each thruster is taken to give.
-        shortage: which thrusters have been at their limits, and which axes short, for how long.
     """
 
     compensates = True
@@ -113,7 +111,6 @@ class ThrustAllocator:
         self._lag: LagCompensation | None = None
         if self.compensates and lags is not None and config.lag_compensation > 0.0:
             self._lag = LagCompensation(lags, slew, config.lag_compensation)
-        self.shortage = Shortage(config.shortage_window_s, self._gross, self.limits.size)
         self.effectiveness = np.ones(self.limits.size)
         self._gap: ThrustGap | None = None
         self._rebuild()
@@ -144,7 +141,6 @@ class ThrustAllocator:
         self._thrust = np.zeros_like(self.limits)
         self._coming = np.zeros(6)
         self._solver.reset()
-        self.shortage.reset()
         if self._lag is not None:
             self._lag.reset()
             self._rebuild()
@@ -233,9 +229,7 @@ class ThrustAllocator:
         if self._gap is not None:
             thrust = self._gap.left_out(tau_wanted, thrust, lower, upper)
         self._stamp, self._thrust = wrench.stamp, thrust
-        command, allocation = self._result(wrench.stamp, wrench.wrench, thrust, lower, upper)
-        self.shortage.note(wrench.stamp, allocation.saturated, allocation.residual)
-        return command, allocation
+        return self._result(wrench.stamp, wrench.wrench, thrust, lower, upper)
 
     def safe(self, stamp: int) -> tuple[ThrusterCommand, Allocation]:
         """Zero thrust, for when the command is stale or missing."""

@@ -5,7 +5,7 @@ its optimum is a vertex, where all thrusts but as many as there are independent 
 limit. For the handful of thrusters that a vehicle has, all vertices are worked out at once.
 """
 
-from functools import cache
+from functools import cache, lru_cache
 from itertools import combinations, product
 
 import numpy as np
@@ -46,7 +46,7 @@ def lost_axes(remaining: Array, nominal: Array) -> NDArray[np.bool_]:
     return (nominal > 0.0) & (remaining < LOST_SHARE * nominal)
 
 
-@cache
+@lru_cache(maxsize=256)
 def _authority(m: int, matrix: bytes, limits: bytes, effectiveness: bytes) -> tuple[float, ...]:
     columns = np.frombuffer(matrix).reshape(6, m)
     low, high = np.frombuffer(limits).reshape(2, m) * np.frombuffer(effectiveness)

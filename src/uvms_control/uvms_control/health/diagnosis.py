@@ -5,13 +5,13 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from uvms_control.controlled_axes import AXES
 from uvms_control.health.authority import lost_axes, remaining_authority
 from uvms_control.health.belief import ThrusterBelief
 from uvms_control.health.lasting import Lasting
 from uvms_core.diagnostics import ERROR, WARN, Trouble
 from uvms_core.signals import Allocation, Array, DisturbanceBudget
 
-AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 SATURATED_S = 3.0
 """A thruster at its limit for so long without a break is told: it turns round within 0.5 s, and the
 start of a motion is over within that time."""
@@ -19,7 +19,7 @@ MISSING_SHARE, MISSING_S = 0.1, 2.0
 """An axis of which more than this share of its authority is missing for so long is not held."""
 DRIFT_SHARE, DRIFT_S = 0.003, 3.0
 """A lost axis along which something pushes with more than this share of what the thrusters had is
-not held by the hull either: 0.3 N on a vehicle of 100 N, the drag of 5 cm/s."""
+not held by the hull either, however slowly it drifts."""
 DRIFT_SIGMAS = 3.0
 """The push must also be so many of its standard deviations."""
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from uvms_control.health.belief import ThrusterBelief
 from uvms_control.health.diagnosis import AXES, ThrusterDiagnosis
-from uvms_control.health.trial import TestThrust
+from uvms_control.health.trial import TrialThrust
 from uvms_control.vehicle_data import least_thrusts, thruster_limits
 from uvms_core.diagnostics import Trouble
 from uvms_core.signals import Allocation, Array, DisturbanceBudget, ThrusterCommand
@@ -31,7 +31,7 @@ class Thrusters:
         self.belief = ThrusterBelief(vehicle.thruster_names, configured)
         self._matrix, limits = thruster_matrix(vehicle), thruster_limits(vehicle)[0]
         self._diagnosis = ThrusterDiagnosis(self._matrix, limits, self.belief)
-        self._test = TestThrust(limits, least_thrusts(vehicle))
+        self._test = TrialThrust(limits, least_thrusts(vehicle))
         self._budget: DisturbanceBudget | None = None
         self._informed: tuple[Any, Any] = (None, None)  # who was told, and what
 

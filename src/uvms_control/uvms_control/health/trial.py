@@ -1,4 +1,4 @@
-"""Test thrusts of a thruster that is taken to be dead, to notice when it works again.
+"""Trial thrusts of a thruster that is taken to be dead, to notice when it works again.
 
 A thruster that is left out of the allocation gives no evidence. So it is told a small thrust now
 and then, forward and back again: a dead one gives nothing, and of a whole one the vehicle feels a
@@ -15,10 +15,10 @@ EVERY_S = 4.0
 FOR_S = 1.2
 """Half of it forward and half of it back, several time constants of a thruster each."""
 SHARE = 0.03
-"""Of the smaller limit. On a vehicle of this kind 1 to 3 N, some standard deviations of a tick."""
+"""Of the greater limit: some standard deviations of what the motion of a tick tells of a thrust."""
 
 
-class TestThrust:
+class TrialThrust:
     """Thrusts (m,) to be added for thrusters that are not used.
 
     Args:

@@ -1,4 +1,4 @@
-"""Node `controller`: S-surface plus dynamic law for the vehicle, S-surface law for the arm."""
+"""Node `controller`: wrench for the vehicle and torques for the joints, by the law it is given."""
 
 from uvms_control import ControlConfig
 from uvms_control.parts import ControllerPart
