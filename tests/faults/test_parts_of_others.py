@@ -14,7 +14,8 @@ class Overwriter(Controller):
 
     def step(self, odometry, joints, disturbance, reference):
         answer = super().step(odometry, joints, disturbance, reference)
-        for array in (odometry.nu, odometry.position, joints.position, disturbance.wrench):
+        told = self._budget.restoring, self._budget.external
+        for array in (odometry.nu, odometry.position, joints.position, disturbance.wrench, *told):
             array[:] = 0.0
         reference.q[:] = 0.0
         return answer
@@ -36,6 +37,10 @@ def test_what_a_law_writes_into_its_inputs_stays_its_own(tmp_path, saw):
     for topic in (topics.JOINT_STATES, topics.ODOMETRY, topics.TRUE_ODOMETRY):
         one, other = RunLog.open(ours).series(topic), RunLog.open(theirs).series(topic)
         assert np.array_equal(one.position, other.position), topic.name
+    budgets = (RunLog.open(log).series(topics.DISTURBANCE_BUDGET) for log in (ours, theirs))
+    one, other = budgets
+    assert np.array_equal(one.restoring, other.restoring)
+    assert one.restoring.any()
     saw("a law that writes into its inputs", "it gets copies: log and motion are the same")
 
 

@@ -110,6 +110,21 @@ def test_with_all_of_the_lag_compensated_the_wanted_thrust_is_there_at_the_end()
             assert np.allclose(result.achieved, allocator.matrix @ result.thrust, atol=1e-9)
 
 
+@pytest.mark.parametrize("is_told", [True, False])
+def test_two_commands_close_together_do_not_make_the_commands_wild(is_told):
+    """Stamps that jitter: the lag of a whole period is not made up for within a millisecond."""
+    allocator = ThrustAllocator(VEHICLE, AllocatorConfig(lag_compensation=1.0))
+    if is_told:
+        allocator.prepare(PERIOD)
+    a = np.exp(-PERIOD / 0.15)
+    most = 0.0
+    for stamp_ms in (0, 50, 51, 100, 101, 150, 200):
+        wanted = 1.0 if stamp_ms in (51, 101, 200) else 0.0
+        wrench = Wrench(stamp_ms * 1_000_000, np.array([wanted, 0.0, 0.0, 0.0, 0.0, 0.0]))
+        most = max(most, float(np.abs(allocator.step(wrench)[1].thrust).max()))
+    assert most <= 2.0 / (1.0 - a)
+
+
 def test_commands_ahead_of_the_thrust_stay_where_the_observer_knows_their_lag():
     """Steps that saturate: no slew limit acts, and `ThrustLag` has the mean wrench."""
     allocator = ThrustAllocator(VEHICLE, AllocatorConfig(lag_compensation=1.0))

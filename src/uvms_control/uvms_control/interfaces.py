@@ -60,6 +60,7 @@ class AllocationMethod(Protocol):
     """Shares a wrench out among the thrusters.
 
     An attribute `warning` with a text, where there is one, is logged when the node starts. A method
+    `prepare(period)`, in s, where there is one, is called once before the first step. A method
     `inform(budget)`, where there is one, is called before each step with the `DisturbanceBudget`
     of the tick before (None at the first), which tells of thrusters that fail. A method
     `safe(stamp)`, where there is one, says what is commanded where there is no wrench to share out:

@@ -10,8 +10,8 @@ from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_core import topics
 from uvms_core.diagnostics import Trouble
 from uvms_core.part import Output, Part
-from uvms_core.plugin import create
-from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench, to_seconds
+from uvms_core.plugin import create, prepared
+from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench
 from uvms_core.tick_gate import Companion, CompanionBefore, Covering, Delayed, Same, Tick
 from uvms_core.vehicle import Vehicle
 
@@ -55,9 +55,7 @@ class ControllerPart(Part):
         self.law = self._make_law()
 
     def _make_law(self) -> ControlLaw:
-        law: ControlLaw = create(self._config, self._vehicle)
-        if prepare := getattr(law, "prepare", None):
-            prepare(to_seconds(self._period))
+        law: ControlLaw = prepared(create(self._config, self._vehicle), self._period)
         return law
 
     def safe(self, tick: Tick) -> Iterator[Output]:
@@ -73,8 +71,8 @@ class AllocatorPart(Part):
     outputs = topics.NODES[topics.THRUST_ALLOCATOR].outputs
 
     def __init__(self, vehicle: Vehicle, config: AllocatorConfig, period: int) -> None:
-        self._vehicle, self._config = vehicle, config
-        self.method: AllocationMethod = create(config, vehicle)
+        self._vehicle, self._config, self._period = vehicle, config, period
+        self.method: AllocationMethod = prepared(create(config, vehicle), period)
         self.thrusters = Thrusters(vehicle, config.effectiveness)
         self.inputs = {
             topics.WRENCH_COMMAND: Same(),
@@ -95,7 +93,7 @@ class AllocatorPart(Part):
 
     def restart(self, reason: str) -> None:
         """The method restarts, without a thrust before; what the user said stays."""
-        self.method = create(self._config, self._vehicle)
+        self.method = prepared(create(self._config, self._vehicle), self._period)
 
     def trouble(self) -> Trouble | None:
         """Weak thrusters, lost axes, and what cannot be held."""

@@ -20,9 +20,12 @@ from uvms_core import registry
 from uvms_core.config import Config, validated
 from uvms_core.errors import ConfigError, PluginError, UvmsError
 from uvms_core.registry import Door
+from uvms_core.signals import to_seconds
 
 OWN = "uvms_"
 """What the names of this project's packages begin with."""
+HOOKS = ("inform",)
+"""Methods with signals that a part may have beside those of its protocol."""
 P = TypeVar("P", bound="PluginConfig")
 
 
@@ -186,6 +189,13 @@ def create(config: PluginConfig, first: Any, *others: Any) -> Any:
         ) from fault
 
 
+def prepared(part: Any, period: int) -> Any:
+    """The part, told the control period (ns) by its method `prepare`, in s, where it has one."""
+    if prepare := getattr(part, "prepare", None):
+        prepare(to_seconds(period))
+    return part
+
+
 def _isolated(part: Any, interface: Any) -> Any:
     """A part of somebody else's gets copies of what it is called with.
 
@@ -194,9 +204,13 @@ def _isolated(part: Any, interface: Any) -> Any:
     """
     if type(part).__module__.startswith(OWN):
         return part
-    for name, wanted in vars(interface).items():
-        if inspect.isfunction(wanted) and not name.startswith("_"):
-            setattr(part, name, _with_copies(getattr(part, name)))
+    own = [
+        name
+        for name, wanted in vars(interface).items()
+        if inspect.isfunction(wanted) and not name.startswith("_")
+    ]
+    for name in (*own, *(hook for hook in HOOKS if hasattr(part, hook))):
+        setattr(part, name, _with_copies(getattr(part, name)))
     return part
 
 

@@ -8,9 +8,9 @@ from uvms_core import topics
 from uvms_core.diagnostics import ERROR, Trouble
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
-from uvms_core.plugin import create
+from uvms_core.plugin import create, prepared
 from uvms_core.sensors import INERTIAL
-from uvms_core.signals import DisturbanceBudget, Odometry, Wrench, to_seconds
+from uvms_core.signals import DisturbanceBudget, Odometry, Wrench
 from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
 from uvms_observer.arrivals import sensor_inputs, used_sensors
@@ -170,9 +170,7 @@ class ObserverPart(Part):
         self.law = self._make_law()
 
     def _make_law(self) -> ObserverLaw:
-        law: ObserverLaw = create(self._config, self._vehicle)
-        if prepare := getattr(law, "prepare", None):
-            prepare(to_seconds(self._period))
+        law: ObserverLaw = prepared(create(self._config, self._vehicle), self._period)
         return law
 
     def safe(self, tick: Tick) -> Iterator[Output]:

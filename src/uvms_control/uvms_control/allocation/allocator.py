@@ -205,6 +205,12 @@ class ThrustAllocator:
             " leave a residual"
         )
 
+    def prepare(self, period: float) -> None:
+        """Be told the control period, s; else it is the time between the first two commands."""
+        if self._lag is not None:
+            self._lag.prepare(period)
+            self._rebuild()
+
     def step(self, wrench: Wrench) -> tuple[ThrusterCommand, Allocation]:
         """Thrusts for a commanded wrench (6,) at its stamp, and what they achieve.
 

@@ -39,6 +39,7 @@ class LagCompensation:
     def __init__(self, time_constants: Array, slew: Array, share: float) -> None:
         self._tau, self._share = time_constants, share
         self._slew_tau = slew * time_constants
+        self._period: float | None = None  # s
         self.reset()
 
     def reset(self) -> None:
@@ -47,18 +48,27 @@ class LagCompensation:
         self._command = np.zeros_like(self._tau)
         self._stamp: int | None = None
         self._since, self._decay = 0, np.ones_like(self._tau)
-        self._period: int | None = None
         self._reach = np.full_like(self._tau, np.inf)
         self._set_gain(np.zeros_like(self._tau))
+        if self._period is not None:
+            self.prepare(self._period)
 
     def _set_gain(self, gain: Array) -> None:
         self.slope = 1.0 / (1.0 + gain)
         self._kept = gain * self.slope
 
+    def prepare(self, period: float) -> None:
+        """Set how long a command is held, s, which is what is made up for."""
+        self._period = period
+        decay = np.exp(-period / self._tau)
+        self._reach = self._slew_tau * within_slew(period / self._tau)
+        self._set_gain(self._share * decay / (1.0 - decay))
+
     def advance(self, stamp: int) -> bool:
         """Thrusts at a stamp (ns), by the last command; True where `slope` is new by that.
 
-        The period is the shortest time between two commands: one that was lost does not change it.
+        The period is that of `prepare`, or the time between the first two commands: stamps that
+        jitter, or a command that is lost, do not change it.
         """
         if self._stamp is None or stamp <= self._stamp:
             return False
@@ -66,11 +76,9 @@ class LagCompensation:
         if since != self._since:
             self._since, self._decay = since, np.exp(-to_seconds(since) / self._tau)
         self.thrust = self._command + (self.thrust - self._command) * self._decay
-        if self._period is not None and since >= self._period:
+        if self._period is not None:
             return False
-        self._period = since
-        self._reach = self._slew_tau * within_slew(to_seconds(since) / self._tau)
-        self._set_gain(self._share * self._decay / (1.0 - self._decay))
+        self.prepare(to_seconds(since))
         return True
 
     def hold(self, stamp: int, command: Array) -> None:

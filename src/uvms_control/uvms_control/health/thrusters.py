@@ -47,7 +47,7 @@ class Thrusters:
         self._informed = informed
 
     def after(self, told: Told) -> Told:
-        """The method's answer with what the thrusters will really give, and with test thrusts."""
+        """The method's answer with what the thrusters will really give, and with trial thrusts."""
         command, allocation = told
         shares = self.belief.effectiveness
         if allocation.effectiveness.size != shares.size:  # a method that does not know of health

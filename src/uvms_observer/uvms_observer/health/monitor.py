@@ -9,9 +9,9 @@ from uvms_core.vehicle import Vehicle
 from uvms_dynamics import thruster_matrix
 from uvms_observer.health import evidence as columns
 from uvms_observer.health.evidence import weigh
-from uvms_observer.health.lagged import LaggedThrusts
 from uvms_observer.health.noise import NoiseLevel
 from uvms_observer.health.verdict import Verdict, decide
+from uvms_observer.lagged_thrusts import LaggedThrusts
 
 ANOTHER_PERIOD = 2.5
 """The window begins anew where ticks are this many times further apart or closer: jitter and a tick

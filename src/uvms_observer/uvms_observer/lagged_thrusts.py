@@ -1,4 +1,11 @@
-"""Thrusts behind their commands, one by one."""
+"""Thrusts behind their commands: a thruster follows its command by T' = (T_c - T) / tau.
+
+Over an interval dt with constant command the mean of T is
+
+    T_c + (T_0 - T_c) (1 - exp(-dt/tau)) tau / dt.
+
+Slew limits are neglected.
+"""
 
 import numpy as np
 
@@ -7,7 +14,7 @@ from uvms_core.vehicle import Vehicle
 
 
 class LaggedThrusts:
-    """Mean thrusts over a tick, by T' = (T_c - T) / tau within it; starts at rest."""
+    """Thrusts behind their commands, one by one; they start at rest."""
 
     def __init__(self, vehicle: Vehicle) -> None:
         self._tau = np.array([thruster.time_constant_s for thruster in vehicle.thrusters])
@@ -15,7 +22,7 @@ class LaggedThrusts:
         self._dt, self._decay, self._mean = 0.0, np.ones(len(self._tau)), np.ones(len(self._tau))
 
     def step(self, dt: float, commanded: Array) -> Array:
-        """Mean (m,) N over dt s with these thrusts commanded."""
+        """Mean thrusts (m,) N over dt s with these thrusts (m,) commanded."""
         if dt != self._dt:
             self._dt, self._decay = dt, np.exp(-dt / self._tau)
             self._mean = (1.0 - self._decay) * self._tau / dt
