@@ -21,7 +21,7 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 FREE, AT_LOWER, AT_UPPER = 0, -1, 1
 NOT_POSITIVE_DEFINITE, TOO_MANY_STEPS = -1, -2
 # A multiplier counts as wrong only beyond the rounding error of the gradient's terms.
-MULTIPLIER_TOLERANCE = 1e-12
+MULTIPLIER_TOLERANCE = 1e-14
 
 
 @exact_inner
