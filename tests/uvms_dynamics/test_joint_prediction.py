@@ -76,10 +76,10 @@ def shaken(frequency):
     )
 
 
-def followed(frequency, age):
+def followed(frequency, age, vehicle=VEHICLE, period=PERIOD):
     """Amplitude of the acceleration that the filter finds of 1 rad/s^2, in the steady state."""
-    predict, motion = JointPrediction(VEHICLE), shaken(frequency)
-    times = np.arange(age, 20.0, PERIOD)
+    predict, motion = JointPrediction(vehicle), shaken(frequency)
+    times = np.arange(age, 20.0, period)
     found = np.array(
         [predict.step(sample(t - age, motion), to_nanoseconds(t)).q_ddot[0] for t in times]
     )[len(times) // 2 :]
@@ -120,3 +120,24 @@ def test_older_than_the_loop_stands_is_an_error():
         JointPrediction(VEHICLE).check(joints, to_nanoseconds(2 * PERIOD + 0.6))
     with pytest.raises(SignalError, match=r"must lie within 0\.08 s"):
         JointPrediction(VEHICLE, age_limit_s=0.08).check(joints, to_nanoseconds(2 * PERIOD + 0.1))
+
+
+def noisier(factor):
+    encoders = VEHICLE.sensors.encoders
+    noise = {
+        name: factor * getattr(encoders, name)
+        for name in ("noise_deg", "rate_noise_deg_s", "resolution_deg")
+    }
+    encoders = encoders.model_copy(update=noise)
+    sensors = VEHICLE.sensors.model_copy(update={"encoders": encoders})
+    return VEHICLE.model_copy(update={"sensors": sensors})
+
+
+@pytest.mark.parametrize("period", [0.02, 0.05, 0.1])
+def test_by_rule_the_acceleration_has_one_radian_a_period_whatever_the_encoders(period):
+    bandwidth = 1.0 / period
+    assert followed(0.2 * bandwidth, 0.0, period=period) == pytest.approx(1.0, abs=0.1)
+    assert 0.3 < followed(bandwidth, 0.0, period=period) < 1.1
+    at_bandwidth = followed(0.7 * bandwidth, 0.0, period=period)
+    noisy = followed(0.7 * bandwidth, 0.0, noisier(10.0), period)
+    assert noisy == pytest.approx(at_bandwidth, rel=0.3)

@@ -24,9 +24,9 @@ from uvms_core.signals import Array, JointStates, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.tracking import VARIANCE_FLOOR, TrackingFilter
 
-JOINT_JERK_RAD_S3 = 0.05
-"""How much a joint's acceleration changes within a second: that of a swing by 90 degrees in 10 s
-has a jerk of up to 0.09 rad/s^3, that of a manipulation is below."""
+RADIANS_OF_PERIOD = 1.0
+"""Bandwidth of the acceleration times the time between two samples, by rule: what is faster could
+not be answered before the next one, and would let more noise through."""
 
 RADIANS_OF_AGE = 1.0 / 3.0
 """Bandwidth of the acceleration times the age of the samples: it is carried to the tick unchanged,
@@ -47,7 +47,8 @@ class JointPrediction:
 
     Args:
         vehicle: noise of the encoders, lag of the thrusters.
-        jerk_rad_s3: how much a joint's acceleration changes within one second.
+        jerk_rad_s3: how much a joint's acceleration changes within one second; None: by rule, that
+            of the bandwidth `RADIANS_OF_PERIOD` over the time between two samples.
         age_limit_s: greatest age of a joint state; None: `joint_age_limit` at the interval between
             the last two ticks.
     """
@@ -55,13 +56,13 @@ class JointPrediction:
     def __init__(
         self,
         vehicle: Vehicle,
-        jerk_rad_s3: float = JOINT_JERK_RAD_S3,
+        jerk_rad_s3: float | None = None,
         age_limit_s: float | None = None,
     ) -> None:
         self._vehicle = vehicle
-        self._filter = TrackingFilter(3, jerk_rad_s3)
+        self._filter = TrackingFilter(3, jerk_rad_s3 or 0.0)
         self._jerk = jerk_rad_s3
-        self._age = 0.0  # of the last sample when it came, s
+        self._suited = (0.0, 0.0)  # age of the last sample when it came and its interval, s
         self._variances = encoder_variances(vehicle)
         self._limit = age_limit_s
         self._stamp: int | None = None  # of the last sample
@@ -103,12 +104,13 @@ class JointPrediction:
 
     def _suit(self, age: float, dt: float) -> None:
         """Let the filter be as fast as samples of this age, s, allow; dt s is their interval."""
-        if age == self._age or dt <= 0.0:
+        if (age, dt) == self._suited or dt <= 0.0:
             return
-        self._age, self._filter.jerk = age, self._jerk
+        self._suited = age, dt
+        jerk = self._jerk or jerk_for(RADIANS_OF_PERIOD / dt, self._variances, dt)
         if age > 0.0:
-            slowest = jerk_for(RADIANS_OF_AGE / age, self._variances, dt)
-            self._filter.jerk = min(self._jerk, slowest)
+            jerk = min(jerk, jerk_for(RADIANS_OF_AGE / age, self._variances, dt))
+        self._filter.jerk = jerk
 
 
 def jerk_for(bandwidth: float, variances: Array, interval_s: float) -> float:

@@ -34,6 +34,7 @@ class TrackingFilter:
         self._density = jerk**2
         self._x: Array | None = None  # (k, channels)
         self._P = np.zeros((order, order))
+        self._measured = order  # value and derivatives of the first measurement
         self._dt = 0.0  # of these
         self._F = np.eye(order)
         self._Q = np.zeros((order, order))
@@ -48,6 +49,8 @@ class TrackingFilter:
         self._density = jerk**2
         if self._dt > 0.0:
             self._Q = self._density * walk(self._order, self._dt)
+        else:  # nothing but the first measurement is known
+            np.fill_diagonal(self._P[self._measured :, self._measured :], self._density)
 
     @property
     def covariance(self) -> Array:
@@ -74,7 +77,7 @@ class TrackingFilter:
         return self._x
 
     def _start(self, measured: Array, variances: Array) -> Array:
-        count = len(variances)
+        self._measured = count = len(variances)
         x = np.zeros((self._order, measured.shape[1]))
         x[:count] = measured
         self._P = self._density * np.eye(self._order)

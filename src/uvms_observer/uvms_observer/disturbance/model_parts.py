@@ -4,7 +4,7 @@ import numpy as np
 
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import Model, coupling_wrench, restoring_wrench
-from uvms_dynamics.joint_prediction import JointMotion
+from uvms_dynamics.joint_prediction import RADIANS_OF_PERIOD, JointMotion
 from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.tracking import follow, transition, walk
 
@@ -16,14 +16,16 @@ class ModelParts:
     """Restoring and coupling, with the vehicle's acceleration by tracking filters.
 
     Args:
-        jerks: (2,) changes of the linear and angular acceleration within a second, m/s^3, rad/s^3.
+        noise: (2,) of the linear and angular velocity, standard deviations in m/s and rad/s.
+        jerks: (2,) changes of the linear and angular acceleration within a second, m/s^3, rad/s^3;
+            one that is None by rule: that of the bandwidth `RADIANS_OF_PERIOD` over the period.
     """
 
-    def __init__(self, jerks: Array) -> None:
-        self._densities = np.asarray(jerks) ** 2
+    def __init__(self, noise: Array, jerks: tuple[float | None, float | None]) -> None:
+        self._noise, self._jerks = noise, jerks
         self._x = np.zeros((ORDER, 6))
         self._P = np.zeros((2, ORDER, ORDER))
-        self._dt, self._F, self._Q = -1.0, np.eye(ORDER), np.zeros((2, ORDER, ORDER))
+        self._dt, self._F, self._Q = 0.0, np.eye(ORDER), np.zeros((2, ORDER, ORDER))
         self._begun = False
 
     def step(self, model: Model, dt: float, odometry: Odometry, joints: JointMotion) -> Array:
@@ -33,11 +35,14 @@ class ModelParts:
             model: with the payload that is held.
             dt: since the step before, s; 0 at the first.
         """
-        if dt != self._dt:
-            self._dt, self._F = dt, transition(ORDER, dt)
-            self._Q = self._densities[:, None, None] * walk(ORDER, dt)
         if not self._begun:
             self._begin(odometry)
+        elif dt != self._dt:
+            densities = self._squares(dt)
+            if not self._dt:  # nothing but the first velocity is known
+                self._P[:, 1, 1] = densities
+            self._dt, self._F = dt, transition(ORDER, dt)
+            self._Q = densities[:, None, None] * walk(ORDER, dt)
         return _parts(
             model, odometry.quaternion, odometry.nu, odometry.twist_covariance,
             *joints, self._x, self._P, self._F, self._Q,
@@ -48,13 +53,19 @@ class ModelParts:
         """Acceleration (6,) of the vehicle at the last step, body frame."""
         return self._x[1]
 
+    def _squares(self, dt: float) -> Array:
+        """Squared jerks (2,) at intervals of dt s: B^2 sigma sqrt(dt) for the bandwidth B."""
+        rule = (RADIANS_OF_PERIOD / dt) ** 2 * self._noise * np.sqrt(dt)
+        given = [own if jerk is None else jerk for jerk, own in zip(self._jerks, rule, strict=True)]
+        return np.square(given)
+
     def _begin(self, odometry: Odometry) -> None:
         """From the measurement, with no acceleration."""
         self._begun = True
         self._x[0] = odometry.nu
         variances = odometry.twist_covariance.diagonal().reshape(2, 3).mean(axis=1)
-        for P, density, variance in zip(self._P, self._densities, variances, strict=True):
-            P[:] = np.diag([variance, density])
+        for P, variance in zip(self._P, variances, strict=True):
+            P[0, 0] = variance
 
 
 @exact_kernel

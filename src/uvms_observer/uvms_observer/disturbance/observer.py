@@ -21,6 +21,7 @@ from uvms_dynamics import Model, build_model, thruster_matrix
 from uvms_dynamics.external_bandwidth import external_bandwidth
 from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
 from uvms_dynamics.payload import COLUMNS, LoadedModel
+from uvms_dynamics.sensor_noise import sensor_noise
 from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
 from uvms_observer.disturbance.model_parts import ModelParts
 from uvms_observer.disturbance.observer_config import ObserverConfig
@@ -53,7 +54,8 @@ class ModelObserver:
         self._loaded = LoadedModel(self._model)
         self._joint_names = vehicle.joint_names
         self._joints = JointPrediction(vehicle, config.joint_jerk_rad_s3, config.joint_age_limit_s)
-        self._parts = ModelParts(np.array([config.vehicle_jerk_m_s3, config.vehicle_jerk_rad_s3]))
+        noise = sensor_noise(vehicle)[1].reshape(2, 3).max(axis=1)
+        self._parts = ModelParts(noise, (config.vehicle_jerk_m_s3, config.vehicle_jerk_rad_s3))
         self._stamp: int | None = None
 
     def step(

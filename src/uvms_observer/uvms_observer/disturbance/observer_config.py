@@ -35,21 +35,24 @@ class ObserverConfig(PluginConfig):
         "residual), rad/s, for all axes; none: by rule for each axis, from the noise of the "
         "sensors, inertia, thrust and the delay of the loop",
     )
-    joint_jerk_rad_s3: float = Field(
-        0.05,
+    joint_jerk_rad_s3: float | None = Field(
+        None,
         gt=0.0,
         description="how much a joint's acceleration changes within one second, rad/s^3; larger "
-        "follows faster and lets more encoder noise through",
+        "follows faster and lets more encoder noise through; none: by rule, from the noise of the"
+        " encoders for a bandwidth of one radian a period",
     )
-    vehicle_jerk_m_s3: float = Field(
-        0.02,
+    vehicle_jerk_m_s3: float | None = Field(
+        None,
         gt=0.0,
-        description="how much the vehicle's acceleration changes within one second, m/s^3",
+        description="how much the vehicle's acceleration changes within one second, m/s^3; none: by"
+        " the same rule from the noise of its velocity",
     )
-    vehicle_jerk_rad_s3: float = Field(
-        0.05,
+    vehicle_jerk_rad_s3: float | None = Field(
+        None,
         gt=0.0,
-        description="how much its angular acceleration changes within one second, rad/s^3",
+        description="how much its angular acceleration changes within one second, rad/s^3; none: by"
+        " the same rule from the noise of its rates",
     )
     joint_age_limit_s: float | None = Field(
         None,
