@@ -17,7 +17,7 @@ from uvms_control.design import (
     sensor_noise,
     vehicle_axes,
 )
-from uvms_control.design.conditions import check_slopes
+from uvms_control.design.conditions import Gains, check_slopes
 from uvms_control.design.gains import axis_designs
 from uvms_control.errors import ControlSetupError
 from uvms_control.paper_controller import PaperController
@@ -172,7 +172,7 @@ def test_every_vehicle_keeps_the_conditions_with_the_defaults(name, law):
         (
             PaperController,
             {"vehicle": {"k_rate": (90.0,) * 6}},
-            "control.vehicle damping of surge: 67.5 1/s makes the loop unstable, with a control"
+            "control.vehicle.k_rate of surge: 90 makes the loop unstable, with a control"
             " period of 0.05 s and thrusters with 0.15 s of lag; at most ",
         ),
     ],
@@ -186,16 +186,18 @@ def test_an_unstable_gain_is_refused_with_its_bound(law, change, message):
 
 def test_the_bound_of_a_refused_gain_is_where_the_loop_turns_unstable():
     axis = Axis(inertia=3.0, period=0.1)
-    with pytest.raises(ControlSetupError, match=r"at most (\S+) 1/s$") as error:
-        check_slopes("gains", [axis] * 6, [1.0] * 6, [25.0] * 6)
-    bound = float(str(error.value).split("at most ")[1].split()[0])
+    one = np.ones(6)
+    with pytest.raises(ControlSetupError, match=r"^k_d of surge: 50 .* at most \S+$") as error:
+        check_slopes([axis] * 6, Gains("k_p", one, one), Gains("k_d", 50.0 * one, 25.0 * one))
+    bound = float(str(error.value).split("at most ")[1])
     # Without lag: z^2 - (2 - hD - h^2 P/2) z + 1 - hD + h^2 P/2 is stable for h D < 2.
-    assert bound == pytest.approx(20.0, rel=1e-3)
+    assert bound == pytest.approx(40.0, rel=1e-3)
 
 
 def test_gains_must_be_positive():
-    with pytest.raises(ControlSetupError, match="gains damping of surge: 0, expected above 0"):
-        check_slopes("gains", [FREE] * 6, [1.0] * 6, [0.0] * 6)
+    none, one = Gains("k_d", np.zeros(6), np.zeros(6)), np.ones(6)
+    with pytest.raises(ControlSetupError, match="k_d of surge: 0, expected above 0"):
+        check_slopes([FREE] * 6, Gains("k_p", one, one), none)
 
 
 @pytest.mark.parametrize("righting", [-0.05, -1.0, -5.0])

@@ -8,7 +8,7 @@ import numpy as np
 
 from uvms_control.config import ControlConfig
 from uvms_control.controller import NO_MONITOR, Controller
-from uvms_control.design.conditions import check_slopes
+from uvms_control.design.conditions import Gains, check_slopes
 from uvms_control.design.vehicle_axes import Timing, vehicle_axes
 from uvms_control.reference import ReferenceSample
 from uvms_control.stability import StabilityMonitor
@@ -51,7 +51,11 @@ class PaperController(Controller):
             each and replace(each, righting=0.0, drag=0.0)
             for each in vehicle_axes(self._vehicle, stowed, Timing(period))
         ]
-        check_slopes("control.vehicle", axes, list(law.stiffness), list(law.damping))
+        check_slopes(
+            axes,
+            Gains("control.vehicle.k_error", law.k_error, law.stiffness),
+            Gains("control.vehicle.k_rate", law.k_rate, law.damping),
+        )
         controlled = self._axes.is_controlled
         self._monitor = StabilityMonitor(law.stiffness * controlled, law.damping * controlled)
         self.arm.prepare(period)

@@ -7,11 +7,14 @@ of the loop decides.
 """
 
 from collections.abc import Callable, Sequence
+from functools import partial
+from typing import NamedTuple
 
 from uvms_control.controlled_axes import AXES
 from uvms_control.design.axis import Axis, AxisGains, loop_matrices
 from uvms_control.design.margins import is_stable
 from uvms_control.errors import ControlSetupError
+from uvms_core.signals import Array
 
 BISECTIONS = 20
 """Halvings of the gain on the way to its bound: to 1e-6 of it."""
@@ -50,31 +53,37 @@ def require_stable(
     )
 
 
-def check_slopes(
-    where: str, axes: Sequence[Axis | None], stiffness: Sequence[float], damping: Sequence[float]
-) -> None:
-    """Check slopes P, 1/s^2, and D, 1/s, of a feedback on the axes that it controls.
+class Gains(NamedTuple):
+    """Gains of a feedback on the six axes, by the name that they have in the configuration."""
 
-    `where`: section of the configuration that they come from.
+    name: str
+    values: Array  # (6,)
+    slopes: Array  # (6,) of the acceleration near the reference, 1/s^2 or 1/s
+
+
+def check_slopes(axes: Sequence[Axis | None], on_error: Gains, on_rate: Gains) -> None:
+    """Check the gains on error (slopes P) and rate (slopes D) on the axes that are controlled.
 
     Raises:
-        ControlSetupError: a slope is not positive, or the sampled loop is not stable with it.
+        ControlSetupError: a gain is not positive, or the sampled loop is not stable with it.
     """
-    for name, axis, p, d in zip(AXES, axes, stiffness, damping, strict=True):
+    for i, (name, axis) in enumerate(zip(AXES, axes, strict=True)):
         if axis is None:
             continue
-        for gain, value in (("stiffness", p), ("damping", d)):
-            if not value > 0.0:
-                raise ControlSetupError(f"{where} {gain} of {name}: {value:g}, expected above 0")
+        for gains in (on_error, on_rate):
+            if not gains.slopes[i] > 0.0:
+                raise ControlSetupError(
+                    f"{gains.name} of {name}: {gains.values[i]:g}, expected above 0"
+                )
+        p, d = float(on_error.slopes[i]), float(on_rate.slopes[i])
         # Little stiffness first: what damping alone does not bear is not the stiffness's fault.
-        _damping(f"{where} damping of {name}", axis, float(p), float(d))
-        _stiffness(f"{where} stiffness of {name}", axis, float(p), float(d))
+        soft = min(p, (0.1 * d) ** 2)
+        _require(on_rate, i, axis, partial(AxisGains, soft))
+        _require(on_error, i, axis, partial(AxisGains, damping=d))
 
 
-def _damping(gain: str, axis: Axis, stiffness: float, damping: float) -> None:
-    soft = min(stiffness, (0.1 * damping) ** 2)
-    require_stable(gain, damping, " 1/s", axis, lambda value: AxisGains(soft, value))
-
-
-def _stiffness(gain: str, axis: Axis, stiffness: float, damping: float) -> None:
-    require_stable(gain, stiffness, " 1/s^2", axis, lambda value: AxisGains(value, damping))
+def _require(gains: Gains, i: int, axis: Axis, at: Callable[[float], AxisGains]) -> None:
+    value = float(gains.values[i])
+    per_gain = float(gains.slopes[i]) / value
+    name = f"{gains.name} of {AXES[i]}"
+    require_stable(name, value, "", axis, lambda gain: at(per_gain * gain))
