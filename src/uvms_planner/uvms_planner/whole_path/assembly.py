@@ -1,0 +1,289 @@
+"""Cost, gradient and banded Gauss-Newton matrix of a plan, sample by sample.
+
+F(c) = 1/2 sum w |r|^2 + sum w P(g): the integral of the squared wrenches by Gauss's quadrature,
+the penalties of the sampled limits by the same weights, and those of the limits that are linear
+in the coefficients c.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import inner, kernel, shared
+from uvms_planner.whole_path.barrier import penalty
+from uvms_planner.whole_path.sample import THRUST, TURN, WRENCHES, sample_jacobian, sample_values
+from uvms_planner.whole_path.spline import DEGREE
+
+FUNCTIONS = DEGREE + 1
+NEAR = 0.5  # share of a thruster's limit from which on its derivatives count
+
+
+class Grid(NamedTuple):
+    """Where the plan is judged."""
+
+    first: Array  # (k,) first spline function at each sample
+    basis: Array  # (k, 3, FUNCTIONS)
+    weights: Array  # (k,) s, of the quadrature
+    numbers: Array  # (K,) block of unknowns of each coefficient, -1 where it is given
+
+
+class Bounds(NamedTuple):
+    """Of the sampled values from POSITION on: lower <= v <= upper, in units of `scale`."""
+
+    lower: Array  # (v,)
+    upper: Array  # (v,)
+    scale: Array  # (v,)
+    price: Array  # (v,) of breaking it, relative to that of a limit of the posture
+
+
+class Rows(NamedTuple):
+    """Limits of sum_j a_j c[first + j, dimension], three coefficients at most."""
+
+    first: Array  # (r,)
+    dimension: Array  # (r,)
+    factors: Array  # (r, 3)
+    lower: Array  # (r,)
+    upper: Array  # (r,)
+    scale: Array  # (r,)
+    weights: Array  # (r,) s
+
+
+class Wishes(NamedTuple):
+    """What costs a little: motion, nearness to stops, a turn away from the prescribed one."""
+
+    motion: Array  # (3, d) weights of posture (unused), rates and accelerations squared
+    low: Array  # (d,) posture below which the stop is near
+    high: Array  # (d,)
+    stop: Array  # (d,) weight of the distance beyond, squared
+    turn: float  # weight of the turn, squared
+
+
+@inner
+def _posture(grid, coefficients, i, motion):
+    """Fill `motion` (3, d) with the spline's value and derivatives at sample i."""
+    for row in range(3):
+        for column in range(motion.shape[1]):
+            total = 0.0
+            for a in range(FUNCTIONS):
+                total += grid.basis[i, row, a] * coefficients[grid.first[i] + a, column]
+            motion[row, column] = total
+
+
+@inner
+def _beyond(wishes, k, x):
+    """How far a posture is inside the margin of a stop, with its sign."""
+    return min(x - wishes.low[k], 0.0) + max(x - wishes.high[k], 0.0)
+
+
+@inner
+def _wished(wishes, motion, values):
+    """Half the squares of what only costs a little."""
+    total = 0.0
+    for k in range(motion.shape[1]):
+        total += wishes.motion[1, k] * motion[1, k] ** 2
+        total += wishes.motion[2, k] * motion[2, k] ** 2
+        total += wishes.stop[k] * _beyond(wishes, k, motion[0, k]) ** 2
+    for k in range(3):
+        total += wishes.turn * values[TURN + k] ** 2
+    return 0.5 * total
+
+
+@shared
+def _one_sample(model, water, grid, target, bounds, wishes, mu, rho, i, motion, values):
+    """The share of sample i in the cost, without its weight."""
+    thrust = values.shape[0] > THRUST
+    sample_values(model, water, motion, target, i, True, thrust, values)
+    total = _wished(wishes, motion, values)
+    for k in range(WRENCHES):
+        total += 0.5 * values[k] ** 2
+    for j in range(bounds.lower.shape[0]):
+        v = values[WRENCHES + j]
+        if bounds.upper[j] < np.inf:
+            total += penalty((v - bounds.upper[j]) / bounds.scale[j], mu, rho * bounds.price[j])[0]
+        if bounds.lower[j] > -np.inf:
+            total += penalty((bounds.lower[j] - v) / bounds.scale[j], mu, rho * bounds.price[j])[0]
+    return total
+
+
+@shared
+def _row_value(rows, r, coefficients):
+    total = 0.0
+    for j in range(3):
+        if rows.factors[r, j] != 0.0:
+            total += rows.factors[r, j] * coefficients[rows.first[r] + j, rows.dimension[r]]
+    return total
+
+
+@shared
+def _row_cost(rows, r, coefficients, mu, rho):
+    """Penalty, slope and curvature of a linear limit, by its value."""
+    v, scale = _row_value(rows, r, coefficients), rows.scale[r]
+    total, slope, curvature = 0.0, 0.0, 0.0
+    if rows.upper[r] < np.inf:
+        p, z, c = penalty((v - rows.upper[r]) / scale, mu, rho)
+        total, slope, curvature = p, z / scale, c / scale**2
+    if rows.lower[r] > -np.inf:
+        p, z, c = penalty((rows.lower[r] - v) / scale, mu, rho)
+        total, slope, curvature = total + p, slope - z / scale, curvature + c / scale**2
+    w = rows.weights[r]
+    return w * total, w * slope, w * curvature
+
+
+@kernel
+def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients):
+    """F(c) for coefficients (K, d)."""
+    motion = np.empty((3, coefficients.shape[1]))
+    values = np.zeros(WRENCHES + bounds.lower.shape[0])
+    total = 0.0
+    for i in range(grid.first.shape[0]):
+        _posture(grid, coefficients, i, motion)
+        one = _one_sample(model, water, grid, target, bounds, wishes, mu, rho, i, motion, values)
+        total += grid.weights[i] * one
+    for r in range(rows.first.shape[0]):
+        total += _row_cost(rows, r, coefficients, mu, rho)[0]
+    return total
+
+
+@kernel
+def disturbance(model, water, grid, target, bounds, coefficients):
+    """J: the integral of the squared wrenches."""
+    motion = np.empty((3, coefficients.shape[1]))
+    values = np.zeros(WRENCHES + bounds.lower.shape[0])
+    total = 0.0
+    for i in range(grid.first.shape[0]):
+        _posture(grid, coefficients, i, motion)
+        sample_values(model, water, motion, target, i, True, False, values)
+        for k in range(WRENCHES):
+            total += grid.weights[i] * values[k] ** 2
+    return total
+
+
+@shared
+def _add_square(row, factor, slope, matrix, vector):
+    """matrix += factor row^T row (lower half), vector += slope row."""
+    for a in range(row.shape[0]):
+        x = factor * row[a]
+        vector[a] += slope * row[a]
+        for b in range(a + 1):
+            matrix[a, b] += x * row[b]
+
+
+@shared
+def _local(bounds, wishes, mu, rho, weight, motion, values, jacobian, matrix, vector):
+    """Matrix (3d, 3d, lower half) and gradient (3d,) of one sample in terms of its motion."""
+    d = motion.shape[1]
+    matrix[:] = 0.0
+    vector[:] = 0.0
+    for k in range(WRENCHES):
+        _add_square(jacobian[k], weight, weight * values[k], matrix, vector)
+    if wishes.turn > 0.0:
+        for k in range(3):
+            w = weight * wishes.turn
+            _add_square(jacobian[TURN + k], w, w * values[TURN + k], matrix, vector)
+    for j in range(bounds.lower.shape[0]):
+        v, scale = values[WRENCHES + j], bounds.scale[j]
+        slope, curvature = 0.0, 0.0
+        if bounds.upper[j] < np.inf:
+            _, z, c = penalty((v - bounds.upper[j]) / scale, mu, rho * bounds.price[j])
+            slope, curvature = z / scale, c / scale**2
+        if bounds.lower[j] > -np.inf:
+            _, z, c = penalty((bounds.lower[j] - v) / scale, mu, rho * bounds.price[j])
+            slope, curvature = slope - z / scale, curvature + c / scale**2
+        if curvature > 0.0:
+            _add_square(jacobian[WRENCHES + j], weight * curvature, weight * slope, matrix, vector)
+    for k in range(d):
+        for row in range(1, 3):
+            w = weight * wishes.motion[row, k]
+            matrix[row * d + k, row * d + k] += w
+            vector[row * d + k] += w * motion[row, k]
+        beyond = _beyond(wishes, k, motion[0, k])
+        if beyond != 0.0:
+            matrix[k, k] += weight * wishes.stop[k]
+            vector[k] += weight * wishes.stop[k] * beyond
+
+
+@shared
+def _spread(grid, i, matrix, vector, half, band, gradient):
+    """Add a sample's matrix and gradient to those of the coefficients."""
+    size = vector.shape[0]
+    d = size // 3
+    for a in range(FUNCTIONS):
+        block = grid.numbers[grid.first[i] + a]
+        for row in range(size):
+            for j in range(d):
+                total = 0.0
+                for l in range(3):
+                    m = l * d + j
+                    x = matrix[row, m] if row >= m else matrix[m, row]
+                    total += x * grid.basis[i, l, a]
+                half[a, j, row] = total
+        if block < 0:
+            continue
+        for j in range(d):
+            for l in range(3):
+                gradient[block * d + j] += grid.basis[i, l, a] * vector[l * d + j]
+    for a in range(FUNCTIONS):
+        column_block = grid.numbers[grid.first[i] + a]
+        if column_block < 0:
+            continue
+        for b in range(FUNCTIONS):
+            row_block = grid.numbers[grid.first[i] + b]
+            if row_block < column_block:
+                continue
+            for j in range(d):
+                column = column_block * d + j
+                for m in range(j if row_block == column_block else 0, d):
+                    total = 0.0
+                    for l in range(3):
+                        total += grid.basis[i, l, b] * half[a, j, l * d + m]
+                    band[column, row_block * d + m - column] += total
+
+
+@kernel
+def linearise(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients, band):
+    """Gradient of F; fills `band` (unknowns, width) with its Gauss-Newton matrix.
+
+    Row c of the band holds the elements (c, c), (c + 1, c) ... of column c.
+    """
+    d = coefficients.shape[1]
+    motion, size = np.empty((3, d)), WRENCHES + bounds.lower.shape[0]
+    values, moved, jacobian = np.zeros(size), np.zeros(size), np.zeros((size, 3 * d))
+    matrix, vector = np.empty((3 * d, 3 * d)), np.empty(3 * d)
+    half = np.empty((FUNCTIONS, d, 3 * d))
+    gradient = np.zeros(band.shape[0])
+    band[:] = 0.0
+    for i in range(grid.first.shape[0]):
+        _posture(grid, coefficients, i, motion)
+        thrust = size > THRUST
+        sample_values(model, water, motion, target, i, True, thrust, values)
+        needed = False
+        for k in range(THRUST, size):
+            needed = needed or abs(values[k]) > NEAR * bounds.upper[k - WRENCHES]
+        sample_jacobian(model, water, motion, target, i, needed, values, moved, jacobian)
+        if thrust and not needed:
+            jacobian[THRUST:] = 0.0
+        _local(bounds, wishes, mu, rho, grid.weights[i], motion, values, jacobian, matrix, vector)
+        _spread(grid, i, matrix, vector, half, band, gradient)
+    for r in range(rows.first.shape[0]):
+        _add_row(grid, rows, r, mu, rho, coefficients, band, gradient)
+    return gradient
+
+
+@shared
+def _add_row(grid, rows, r, mu, rho, coefficients, band, gradient):
+    d = coefficients.shape[1]
+    _, slope, curvature = _row_cost(rows, r, coefficients, mu, rho)
+    for j in range(3):
+        column_block = grid.numbers[rows.first[r] + j]
+        if rows.factors[r, j] == 0.0 or column_block < 0:
+            continue
+        column = column_block * d + rows.dimension[r]
+        gradient[column] += slope * rows.factors[r, j]
+        for k in range(3):
+            if rows.factors[r, k] == 0.0:
+                continue
+            row_block = grid.numbers[rows.first[r] + k]
+            if row_block >= column_block:
+                factor = rows.factors[r, j] * rows.factors[r, k]
+                band[column, (row_block - column_block) * d] += curvature * factor

@@ -1,0 +1,156 @@
+"""The problem on knots: what the kernels of `assembly` take."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_planner.problem import VEHICLE
+from uvms_planner.whole_path import assembly
+from uvms_planner.whole_path.assembly import Bounds, Grid, Rows, Wishes
+from uvms_planner.whole_path.path_problem import PathProblem
+from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, WRENCHES, Target, Water
+from uvms_planner.whole_path.spline import (
+    DEGREE,
+    FIXED,
+    basis_at,
+    end_coefficients,
+    knots_at,
+    rate_factors,
+)
+
+TIGHT = 0.99  # of sampled limits: what a value may gain between two samples
+ATTITUDE_PRICE = 0.1
+"""A start may be beyond the free attitude's limits: no acceleration is exceeded to come back."""
+NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
+
+
+@dataclass(frozen=True)
+class Discrete:
+    """A problem on knots."""
+
+    problem: PathProblem
+    knots: Array
+    grid: Grid
+    target: Target
+    water: Water
+    bounds: Bounds
+    rows: Rows
+    wishes: Wishes
+
+    @property
+    def unknowns(self) -> int:
+        """How many numbers are sought."""
+        return (int(self.grid.numbers.max()) + 1) * self.problem.size
+
+    def arguments(self):
+        """The first arguments of the kernels."""
+        return (
+            self.problem.model, self.water, self.grid, self.target, self.bounds, self.rows,
+            self.wishes,
+        )  # fmt: skip
+
+    def disturbance(self, coefficients: Array) -> float:
+        """J on the samples of the quadrature."""
+        return assembly.disturbance(
+            self.problem.model, self.water, self.grid, self.target, self.bounds, coefficients
+        )
+
+    def complete(self, coefficients: Array) -> Array:
+        """The same coefficients (K, d) with the start and the rest at the end put right."""
+        out, start = coefficients.copy(), self.problem.start
+        out[:FIXED] = end_coefficients(self.knots, start.value, start.rate, start.acceleration)
+        out[-FIXED:] = out[-FIXED]
+        return out
+
+
+def discretise(
+    problem: PathProblem, breaks: Array, points: int = 3, tight: float = TIGHT
+) -> Discrete:
+    """The problem with the spline's pieces between `breaks` and `points` samples on each."""
+    knots = knots_at(breaks)
+    times, weights = _quadrature(breaks, points)
+    basis = basis_at(knots, times)
+    count = len(knots) - DEGREE - 1
+    numbers = np.arange(count) - FIXED
+    numbers[:FIXED], numbers[-FIXED:] = -1, count - 2 * FIXED
+    grid = Grid(basis.first, basis.values, weights, numbers.astype(np.int64))
+    water = problem.water or NO_WATER
+    return Discrete(
+        problem, knots, grid, problem.target(times), water, _bounds(problem, water, tight),
+        _rows(problem, knots, numbers), _wishes(problem),
+    )  # fmt: skip
+
+
+def _quadrature(breaks: Array, points: int) -> tuple[Array, Array]:
+    """Gauss-Legendre instants and weights on every piece."""
+    x, w = np.polynomial.legendre.leggauss(points)
+    half, middle = np.diff(breaks) / 2, (breaks[1:] + breaks[:-1]) / 2
+    return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
+
+
+def _bounds(problem: PathProblem, water: Water, tight: float) -> Bounds:
+    limits, thrusters = problem.limits, len(water.shares)
+    size = THRUST - WRENCHES + thrusters
+    upper = np.full(size, np.inf)
+    at = POSITION - WRENCHES
+    upper[at + 3 : at + 6] = tight * limits.rate[:3]
+    upper[at + 6 : at + 9] = tight * limits.acceleration[:3]
+    roll = ATTITUDE - WRENCHES
+    upper[roll : roll + 2] = tight * limits.roll_max, tight * limits.pitch_max
+    upper[THRUST - WRENCHES :] = 1.0
+    lower, scale = -upper, np.where(np.isfinite(upper), upper, 1.0)
+    lower[at : at + 3], upper[at : at + 3] = limits.lower[:3], limits.upper[:3]
+    price = np.ones(size)
+    price[roll : roll + 2] = ATTITUDE_PRICE
+    return Bounds(lower, upper, scale, price)
+
+
+def _rows(problem: PathProblem, knots: Array, numbers: Array) -> Rows:
+    """Bounds, rates and accelerations of the posture by the convex hull of the coefficients."""
+    first, second = rate_factors(knots, DEGREE), rate_factors(knots[1:-1], DEGREE - 1)
+    zero = np.zeros_like(first)
+    value = np.stack([np.ones(len(numbers)), np.zeros(len(numbers)), np.zeros(len(numbers))], 1)
+    rate = np.stack([-first, first, zero], 1)
+    bend = np.stack(
+        [second * first[:-1], -second * (first[:-1] + first[1:]), second * first[1:]], 1
+    )
+    parts = []
+    for k in range(problem.size):
+        c, limits = VEHICLE - 1 + k, problem.limits
+        low = min(limits.lower[c], problem.start.value[k])
+        high = max(limits.upper[c], problem.start.value[k])
+        parts.append(_row_block(k, value, knots, DEGREE, low, high, numbers))
+        for factors, degree, top in ((rate, 3, limits.rate[c]), (bend, 2, limits.acceleration[c])):
+            parts.append(_row_block(k, factors, knots, degree, -top, top, numbers))
+    return Rows(*(np.concatenate(columns) for columns in zip(*parts, strict=True)))
+
+
+def _row_block(k, factors, knots, degree, low, high, numbers):
+    """One limit of posture variable k for all coefficients of one derivative."""
+    drop = DEGREE - degree
+    own = knots[drop : len(knots) - drop]
+    span = (own[degree + 1 :] - own[: -degree - 1]) / (degree + 1)
+    first = np.arange(len(factors))
+    free = np.array([(numbers[i : i + drop + 1] >= 0).any() for i in first])
+    moves = np.array([len(set(numbers[i : i + drop + 1])) > 1 for i in first]) | (drop == 0)
+    used = free & moves & bool(np.isfinite(low) or np.isfinite(high))
+    count = int(used.sum())
+    half = (high - low) / 2 if np.isfinite(high - low) else 1.0
+    return (
+        first[used].astype(np.int64), np.full(count, k, dtype=np.int64),
+        np.ascontiguousarray(factors[used]), np.full(count, float(low)),
+        np.full(count, float(high)), np.full(count, half), span[used],
+    )  # fmt: skip
+
+
+def _wishes(problem: PathProblem) -> Wishes:
+    weights, limits, d = problem.weights, problem.limits, problem.size
+    rate, bend = limits.rate[VEHICLE - 1 :], limits.acceleration[VEHICLE - 1 :]
+    lower, upper = limits.lower[VEHICLE - 1 :], limits.upper[VEHICLE - 1 :]
+    motion = np.stack([np.zeros(d), weights.rate / rate**2, weights.acceleration / bend**2])
+    margin = np.minimum(weights.stop_margin, (upper - lower) / 4)
+    stop = np.where(np.isfinite(upper - lower), weights.stop / weights.stop_margin**2, 0.0)
+    return Wishes(
+        motion, lower + margin, upper - margin, stop, weights.turn if problem.tool.oriented else 0.0
+    )

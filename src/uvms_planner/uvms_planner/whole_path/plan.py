@@ -1,0 +1,88 @@
+"""A plan over the whole path: the posture's spline, and the vehicle's position in closed form."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import kernel
+from uvms_planner.segment import Samples
+from uvms_planner.whole_path.discrete import NO_WATER
+from uvms_planner.whole_path.path_problem import PathProblem
+from uvms_planner.whole_path.plan_report import PlanReport, report_of
+from uvms_planner.whole_path.sample import THRUST, sample_values, vehicle_motion
+from uvms_planner.whole_path.spline import DEGREE, basis_at
+from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
+
+
+@dataclass(frozen=True)
+class PathPlan:
+    """The motion of vehicle and joints along a whole path."""
+
+    problem: PathProblem
+    knots: Array
+    coefficients: Array  # (K, d) of yaw and joints
+    iterations: int
+
+    @property
+    def duration(self) -> float:
+        """Length of the plan in s."""
+        return float(self.knots[-1])
+
+    def posture(self, times: Array) -> Array:
+        """Yaw and joints with two derivatives at `times` (k,) s: (k, 3, d).
+
+        Before the beginning and after the end it is that of the beginning and the end, where a plan
+        rests.
+        """
+        inside = np.clip(np.asarray(times, dtype=float), 0.0, self.duration)
+        basis = basis_at(self.knots, inside)
+        near = self.coefficients[basis.first[:, None] + np.arange(DEGREE + 1)]
+        return np.einsum("kra,kad->krd", basis.values, near)
+
+    def sample(self, times: Array) -> Samples:
+        """The configuration c = (x, y, z, psi, q) with two derivatives at `times` (k,) s."""
+        motion = self.posture(times)
+        vehicle = _vehicle_motions(
+            self.problem.model, motion, self.problem.target(np.asarray(times, dtype=float))
+        )
+        joined = np.concatenate([vehicle, motion], axis=2)
+        return Samples(*(np.ascontiguousarray(joined[:, row]) for row in range(3)))
+
+    def values(self, times: Array) -> Array:
+        """Wrenches, motion, attitude, turn and thrust at `times` (k,) s, as in `sample`."""
+        water = self.problem.water or NO_WATER
+        return plan_values(
+            self.problem.model, water, self.posture(times), self.problem.target(times)
+        )
+
+    @cached_property
+    def report(self) -> PlanReport:
+        """What the plan costs, and how near it comes to each limit and where."""
+        count = max(2, int(np.ceil(self.duration / REPORT_S)))
+        times = np.linspace(0.0, self.duration, count + 1)
+        return report_of(self.problem, times, self.posture(times), self.values(times))
+
+
+REPORT_S = 0.01  # between the instants at which a plan is examined
+
+
+@kernel
+def _vehicle_motions(model, motion, target):
+    """Position, velocity and acceleration (k, 3, 3) of the vehicle."""
+    out = np.empty((motion.shape[0], 3, 3))
+    frames, tool = np.empty((motion.shape[2], FRAME_COLUMNS)), np.empty((3, 3))
+    for i in range(motion.shape[0]):
+        vehicle_motion(model, motion[i], target, i, frames, tool, out[i])
+    return out
+
+
+@kernel
+def plan_values(model, water, motion, target):
+    """All values of `sample.sample_values` at the instants of motion (k, 3, d): (k, values)."""
+    out = np.zeros((motion.shape[0], THRUST + water.shares.shape[0]))
+    for i in range(motion.shape[0]):
+        thrust = water.shares.shape[0] > 0
+        sample_values(model, water, motion[i], target, i, True, thrust, out[i])
+    return out

@@ -1,0 +1,158 @@
+"""What the plan costs and needs at one instant, from the posture's motion and the tool's path.
+
+The posture s = (psi, q) of the level vehicle and the tool's position y decide the vehicle's
+position, p = y - Rz(psi) r(q), r the tool in the body frame; so the tool is exactly on its path
+at every instant.
+"""
+
+from typing import NamedTuple
+
+import numpy as np
+
+from uvms_core.signals import Array
+from uvms_dynamics import coupling_wrench, inverse_dynamics, restoring_wrench
+from uvms_dynamics.kernels.jit import inner, shared
+from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
+from uvms_planner.problem import yaw_quaternion
+from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS, tool_axes, tool_motion
+
+WRENCHES = 12  # restoring and coupling wrench
+POSITION = WRENCHES  # of the vehicle, then its velocity and acceleration, world axes
+ATTITUDE = POSITION + 9  # roll and pitch that the vehicle takes up freely
+TURN = ATTITUDE + 2  # from the prescribed orientation of the tool to its own
+THRUST = TURN + 3  # share of each thruster's authority
+STEP = 1e-6  # of a finite difference, rad, rad/s, rad/s^2
+
+
+class Target(NamedTuple):
+    """The tool's path at k instants."""
+
+    position: Array  # (k, 3) m
+    velocity: Array  # (k, 3) m/s
+    acceleration: Array  # (k, 3) m/s^2
+    rotation: Array  # (k, 3, 3) tool to map_ned; (0, 3, 3) where it is free
+
+
+class Water(NamedTuple):
+    """What decides the thrust that a motion needs."""
+
+    shares: Array  # (thrusters, 6) share of each thruster's limit per unit of wrench
+    current: Array  # (3,) m/s, map_ned
+
+
+@shared
+def vehicle_motion(model, motion, target, i, frames, tool, out):
+    """Fill `out` (3, 3): position, velocity and acceleration of the vehicle, world axes."""
+    tool_motion(model, motion, frames, tool)
+    c, s = np.cos(motion[0, 0]), np.sin(motion[0, 0])
+    w, bend = motion[1, 0], motion[2, 0]
+    x, y = tool[0, 0], tool[0, 1]
+    vx, vy = tool[1, 0] - w * y, tool[1, 1] + w * x
+    ax = tool[2, 0] - bend * y - w * (tool[1, 1] + vy)
+    ay = tool[2, 1] + bend * x + w * (tool[1, 0] + vx)
+    out[0, 0] = target.position[i, 0] - (c * x - s * y)
+    out[0, 1] = target.position[i, 1] - (s * x + c * y)
+    out[1, 0] = target.velocity[i, 0] - (c * vx - s * vy)
+    out[1, 1] = target.velocity[i, 1] - (s * vx + c * vy)
+    out[2, 0] = target.acceleration[i, 0] - (c * ax - s * ay)
+    out[2, 1] = target.acceleration[i, 1] - (s * ax + c * ay)
+    out[0, 2] = target.position[i, 2] - tool[0, 2]
+    out[1, 2] = target.velocity[i, 2] - tool[1, 2]
+    out[2, 2] = target.acceleration[i, 2] - tool[2, 2]
+
+
+@inner
+def _body_motion(motion, vehicle, nu, nu_dot):
+    """Nu and nu_dot (6,) of the level vehicle: nu_dot = R^T p_ddot - omega x nu."""
+    c, s, w = np.cos(motion[0, 0]), np.sin(motion[0, 0]), motion[1, 0]
+    nu[0] = c * vehicle[1, 0] + s * vehicle[1, 1]
+    nu[1] = -s * vehicle[1, 0] + c * vehicle[1, 1]
+    nu[2], nu[5] = vehicle[1, 2], w
+    nu_dot[0] = c * vehicle[2, 0] + s * vehicle[2, 1] + w * nu[1]
+    nu_dot[1] = -s * vehicle[2, 0] + c * vehicle[2, 1] - w * nu[0]
+    nu_dot[2], nu_dot[5] = vehicle[2, 2], motion[2, 0]
+
+
+@shared
+def sample_values(model, water, motion, target, i, moved, thrust, out):
+    """Fill `out` with all values of one instant; those of the posture alone only if `moved`.
+
+    motion (3, d): posture, rates, accelerations. `thrust`: whether the thrusters' shares count.
+    """
+    n = motion.shape[1] - 1
+    frames, tool = np.empty((n + 1, FRAME_COLUMNS)), np.empty((3, 3))
+    vehicle = np.empty((3, 3))
+    nu, nu_dot = np.zeros(6), np.zeros(6)
+    vehicle_motion(model, motion, target, i, frames, tool, vehicle)
+    _body_motion(motion, vehicle, nu, nu_dot)
+    q, q_dot, q_ddot = motion[0, 1:], motion[1, 1:], motion[2, 1:]
+    coupling = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
+    for k in range(6):
+        out[6 + k] = coupling[k]
+    for row in range(3):
+        for k in range(3):
+            out[POSITION + 3 * row + k] = vehicle[row, k]
+    if moved:
+        _posture_values(model, motion, target, i, frames, out)
+    if thrust:
+        _thrust_shares(model, water, motion, nu, nu_dot, out)
+
+
+@shared
+def _posture_values(model, motion, target, i, frames, out):
+    """Restoring wrench, free attitude and the tool's turn, which no rate changes."""
+    n = motion.shape[1] - 1
+    q = motion[0, 1:]
+    quaternion = np.zeros(4)
+    quaternion[3] = 1.0
+    level = restoring_wrench(model, quaternion, q)
+    quaternion[0] = quaternion[3] = np.sqrt(0.5)
+    rolled = restoring_wrench(model, quaternion, q)
+    for k in range(6):
+        out[k] = level[k]
+    x, y, z = -level[4], level[3], -rolled[3]
+    out[ATTITUDE], out[ATTITUDE + 1] = np.arctan2(y, z), np.arctan2(-x, np.hypot(y, z))
+    for k in range(3):
+        out[TURN + k] = 0.0
+    if target.rotation.shape[0] > 0:
+        turned, gap = np.empty((3, 3)), np.zeros((3, 3))
+        tool_axes(model, frames, n, motion[0, 0], turned)
+        for row in range(3):
+            for column in range(3):
+                for k in range(3):
+                    gap[row, column] += turned[row, k] * target.rotation[i, column, k]
+        vector = quat_to_rotation_vector(matrix_to_quat(gap))
+        for k in range(3):
+            out[TURN + k] = vector[k]
+
+
+@shared
+def _thrust_shares(model, water, motion, nu, nu_dot, out):
+    """Share of each thruster's limit that the motion needs, by the least squares of all."""
+    c, s, w = np.cos(motion[0, 0]), np.sin(motion[0, 0]), motion[1, 0]
+    x = c * water.current[0] + s * water.current[1]
+    y = -s * water.current[0] + c * water.current[1]
+    nu[0], nu[1], nu[2] = nu[0] - x, nu[1] - y, nu[2] - water.current[2]
+    nu_dot[0], nu_dot[1] = nu_dot[0] - w * y, nu_dot[1] + w * x
+    level = yaw_quaternion(0.0)
+    needed = inverse_dynamics(model, level, nu, nu_dot, motion[0, 1:], motion[1, 1:], motion[2, 1:])
+    for k in range(water.shares.shape[0]):
+        total = 0.0
+        for j in range(6):
+            total += water.shares[k, j] * needed[j]
+        out[THRUST + k] = total
+
+
+@shared
+def sample_jacobian(model, water, motion, target, i, thrust, base, moved, out):
+    """Fill `out` (values, 3 d) with the derivatives of all values by forward differences."""
+    d = motion.shape[1]
+    for row in range(3):
+        for column in range(d):
+            kept = motion[row, column]
+            motion[row, column] = kept + STEP
+            sample_values(model, water, motion, target, i, row == 0, thrust, moved)
+            motion[row, column] = kept
+            for k in range(base.shape[0]):
+                still = row > 0 and (k < 6 or ATTITUDE <= k < THRUST)
+                out[k, row * d + column] = 0.0 if still else (moved[k] - base[k]) / STEP
