@@ -1,60 +1,28 @@
 """Following an end-effector path, step by step."""
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from uvms_core.signals import Array, to_nanoseconds, to_seconds
-from uvms_planner.choice import Choice
 from uvms_planner.joined_path import JoinedPath
 from uvms_planner.knot_motion import knot_motion
-from uvms_planner.problem import StepProblem
-from uvms_planner.segment import Knot, Samples, hermite, tool_positions
+from uvms_planner.on_path import FollowedStep, OnPath
+from uvms_planner.segment import Knot, hermite, tool_positions
 from uvms_planner.solver import StepSolver
 
 
-@dataclass(frozen=True)
-class FollowedStep:
-    """One planned step along the path."""
-
-    knot: Knot  # where it ends
-    samples: Samples
-    problem: StepProblem
-    choice: Choice
-    planned_error: float  # m, greatest distance of the samples from the goal's path
-
-
-class PathFollower:
+class PathFollower(OnPath):
     """Plans the steps of one path that begins at the stamp `start`."""
 
     def __init__(self, solver: StepSolver, path: JoinedPath, start: int, step: float):
-        self._solver, self._path, self._start, self._step = solver, path, start, step
-
-    @property
-    def start(self) -> int:
-        """Stamp at which the path begins."""
-        return self._start
-
-    @property
-    def end(self) -> int:
-        """Stamp at which the path ends."""
-        return self._start + to_nanoseconds(self._path.duration)
-
-    @property
-    def path(self) -> JoinedPath:
-        """The path that is followed."""
-        return self._path
-
-    def elapsed(self, stamp: int) -> float:
-        """Seconds of the path that are done at `stamp`, within 0 and its duration."""
-        return min(max(to_seconds(stamp - self._start), 0.0), self._path.duration)
+        super().__init__(path, start)
+        self._solver, self._step = solver, step
 
     def plan(self, knot: Knot, times: Array) -> FollowedStep:
         """The step after `knot`, sampled at `times` (k,) s; where `choice.valid` is False the
         nearest that can be reached.
         """
         begin = to_seconds(knot.stamp - self._start)
-        target = self._path.sample(begin + self._step)
+        target = self.path.sample(begin + self._step)
         problem = self._solver.problem(knot.configuration, knot.increment, target)
         index = round(knot.stamp / to_nanoseconds(self._step))
         choice = self._solver.choose(problem, index)
@@ -69,7 +37,7 @@ class PathFollower:
             increment=choice.increment,
         )
         samples = hermite(knot, end, self._step, times)
-        wanted = self._path.goal.positions(begin + times)
+        wanted = self.path.goal.positions(begin + times)
         gaps = tool_positions(self._solver.model, samples.configuration) - wanted
         return FollowedStep(end, samples, problem, choice, float(_longest(gaps)))
 
@@ -83,7 +51,7 @@ class PathFollower:
         return self._rate(time), (after - before) / self._step
 
     def _rate(self, time: float) -> Array:
-        sample = self._path.sample(time)
+        sample = self.path.sample(time)
         rate = np.zeros(6)
         rate[:3] = sample.velocity
         if sample.angular_velocity is not None:

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from uvms_core import checks
-from uvms_core.end_effector_path import EndEffectorPath, PathSample
+from uvms_core.end_effector_path import PathSample
 from uvms_core.errors import SignalError
 from uvms_core.signals import (
     Array,
@@ -23,12 +23,10 @@ from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_dynamics.payload import LoadedModel
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
-from uvms_planner.follow import FollowedStep, PathFollower
-from uvms_planner.goal_check import check_path_goal, check_reachable, check_start
-from uvms_planner.joined_path import JoinedPath
-from uvms_planner.joint_motion import JointTrajectory, check_joint_goal
-from uvms_planner.problem import VEHICLE
+from uvms_planner.joint_motion import JointTrajectory
+from uvms_planner.on_path import FollowedStep, OnPath
 from uvms_planner.projection import tool_pose
+from uvms_planner.proposal import Progress, Proposal, silent
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
 from uvms_planner.segment import Knot, Samples, reference
 from uvms_planner.solver import StepSolver
@@ -60,7 +58,8 @@ class MotionPlanner:
         self._times = _sample_times(config)
         self._tick: int | None = None
         self._plan: _Plan | None = None
-        self._goal: PathFollower | JointTrajectory | None = None
+        self._goal: OnPath | JointTrajectory | None = None
+        self._proposed = False
         self._finished: GoalResult | None = None
         self._planned_error = 0.0
         self._max_planned_error = 0.0
@@ -71,33 +70,46 @@ class MotionPlanner:
         if self._loaded.take(payload):
             self._solver.model = self._loaded.model
 
-    def accept(self, goal: PathGoal | JointGoal) -> None:
+    def accept(self, goal: PathGoal | JointGoal, progress: Progress = silent) -> None:
         """Begin a goal with the first segment that is not planned yet, or once at rest.
 
         Raises GoalRejected where the goal is malformed, cannot be followed, or comes too early (no
         odometry yet) or too late (another goal is active).
         """
+        proposal = self.propose(goal)
+        try:
+            proposal.work(progress)
+        except BaseException:
+            self.withdraw()
+            raise
+        self.begin(proposal)
+
+    def propose(self, goal: PathGoal | JointGoal) -> Proposal:
+        """Check a goal and say what there is to be planned for it, which `begin` waits for.
+
+        `Proposal.work` takes its time and touches nothing of the planner, so that it may run beside
+        the steps; until `begin` or `withdraw` no other goal is taken. Raises as `accept`.
+        """
         if self._plan is None:
             raise GoalRejected("no odometry yet: the planner does not know where the vehicle is")
-        if self._goal is not None or self._finished is not None:
+        if self.has_goal:
             raise GoalRejected("another goal is active: wait for its end, or cancel it")
-        knot = self._plan.stop.end(self._plan.knot.stamp)
-        if isinstance(goal, JointGoal):
-            check_joint_goal(goal, knot.configuration[VEHICLE:], self._solver.joints)
-            self._goal = JointTrajectory(goal, knot.configuration, knot.stamp, self._config.step_s)
-        else:
-            self._goal = self._follower(goal, knot)
-        self._planned_error = self._max_planned_error = 0.0
+        proposal = Proposal(goal, self._plan.stop.end(self._plan.knot.stamp), self._solver)
+        self._proposed = True
+        return proposal
 
-    def _follower(self, goal: PathGoal, knot: Knot) -> PathFollower:
-        check_path_goal(goal)
-        position, rotation = tool_pose(self._solver.model, knot.configuration)
-        quaternion = matrix_to_quat(rotation)
-        check_start(goal, position, quaternion, self._config)
-        path = EndEffectorPath(goal)
-        joined = JoinedPath(path, position, quaternion, self._config.approach_s)
-        check_reachable(joined, self._solver, knot.configuration, self._config.step_s)
-        return PathFollower(self._solver, joined, knot.stamp, self._config.step_s)
+    def withdraw(self) -> None:
+        """Nothing came of what was proposed."""
+        self._proposed = False
+
+    def begin(self, proposal: Proposal) -> None:
+        """Begin what was planned with the first segment that is not planned yet, or once at rest."""
+        self._proposed = False
+        if self._plan is None:
+            raise GoalRejected("the planner restarted while the goal was being planned")
+        knot = self._plan.stop.end(self._plan.knot.stamp)
+        self._goal = proposal.motion_from(knot)
+        self._planned_error = self._max_planned_error = 0.0
 
     def cancel(self) -> None:
         """Abandon the goal and come to rest smoothly; without a goal nothing happens."""
@@ -106,8 +118,8 @@ class MotionPlanner:
 
     @property
     def has_goal(self) -> bool:
-        """Whether somebody waits for the end of a goal."""
-        return self._goal is not None or self._finished is not None
+        """Whether somebody waits for the end of a goal, or for its beginning."""
+        return self._goal is not None or self._finished is not None or self._proposed
 
     def give_up(self, reason: str) -> None:
         """Say with the next step that the goal of a planner before this one came to nothing."""
@@ -172,7 +184,7 @@ class MotionPlanner:
         plan.stop = self._stop_from(plan.knot)
         return samples
 
-    def _along_path(self, plan: _Plan, goal: PathFollower) -> Samples | None:
+    def _along_path(self, plan: _Plan, goal: OnPath) -> Samples | None:
         """The path's next segment; None, with the goal aborted, where it cannot be reached."""
         begin = goal.elapsed(plan.knot.stamp)
         step = goal.plan(plan.knot, self._times)
@@ -227,7 +239,7 @@ def _sample_times(config: PlannerConfig) -> Array:
     return np.linspace(0.0, config.step_s, count + 1)
 
 
-def _unreachable(goal: PathFollower, step: FollowedStep, config: PlannerConfig) -> str:
+def _unreachable(goal: OnPath, step: FollowedStep, config: PlannerConfig) -> str:
     time = goal.elapsed(step.knot.stamp)
     allowed = config.projection.position_tolerance_m
     return (

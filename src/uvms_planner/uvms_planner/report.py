@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 
 from uvms_core.signals import Array, Reference
-from uvms_planner.follow import FollowedStep
+from uvms_planner.on_path import FollowedStep
 from uvms_planner.solver import StepSolver
 
 

@@ -17,8 +17,12 @@ from uvms_planner.config import PlannerConfig
 from uvms_planner.constraints import free_attitude
 from uvms_planner.fitness import self_disturbance
 from uvms_planner.interfaces import StepMethod
+from uvms_planner.joined_path import JoinedPath
 from uvms_planner.limits import JointLimits, StepLimits
 from uvms_planner.problem import VEHICLE, StepProblem
+from uvms_planner.segment import Knot
+from uvms_planner.whole_path import PathPlan, PathProblem, Posture, ToolPath
+from uvms_planner.whole_path.solve import Progress
 
 
 class StepSolver:
@@ -28,7 +32,7 @@ class StepSolver:
         self.model: Model = build_model(vehicle)
         self.joints = JointLimits.of(vehicle)
         self.limits = StepLimits.of(self.joints, config.limits, config.step_s)
-        self._config = config
+        self.config = config
         self._method: StepMethod = create(config, vehicle, seed)
         self._readiness = self._method.readiness(_readiness(self.limits, config))
         self._motion_weights = _motion_weights(len(self.limits.reach), config)
@@ -37,6 +41,22 @@ class StepSolver:
     def size(self) -> int:
         """M = 4 + n, the length of the configuration."""
         return len(self.limits.reach)
+
+    @property
+    def plans_paths(self) -> bool:
+        """Whether the method plans whole paths before they begin."""
+        return hasattr(self._method, "plan_path")
+
+    def plan_path(self, path: JoinedPath, start: Knot, progress: Progress) -> PathPlan:
+        """The method's plan over a whole path, from a knot; its report says what limits it keeps.
+
+        Only where `plans_paths`.
+        """
+        posture = slice(VEHICLE - 1, None)
+        own = Posture(start.configuration[posture], start.rate[posture], start.acceleration[posture])
+        problem = PathProblem(self.model, ToolPath(path), path.duration, own, self.motion_limits)
+        plan: PathPlan = self._method.plan_path(problem, progress)  # type: ignore[attr-defined]
+        return plan
 
     def problem(
         self,
@@ -49,7 +69,7 @@ class StepSolver:
 
         `bounds` are the least and greatest increment; by default those of all limits.
         """
-        config = self._config
+        config = self.config
         limits = bounds or self.limits.increments(configuration, previous)
         lower, upper = self._method.bounds(*limits)
         oriented = target.quaternion is not None
@@ -93,6 +113,13 @@ class StepSolver:
         """F_dis (6,) of eq. (16) at the end of the step, without looking ahead."""
         wrenches = self_disturbance(self.model, problem, increment, 0.0)
         return wrenches[:6] + wrenches[6:]
+
+    def attitude_violation(self, configuration: Array) -> float:
+        """How far in rad the free attitude lies beyond the limits in `configuration` (m,)."""
+        roll, pitch = np.abs(self.free_attitude(configuration))
+        limits = self.config.limits
+        beyond_roll = max(roll - np.deg2rad(limits.roll_max_deg), 0.0)
+        return float(beyond_roll + max(pitch - np.deg2rad(limits.pitch_max_deg), 0.0))
 
     def free_attitude(self, configuration: Array) -> tuple[float, float]:
         """Roll and pitch in rad that the vehicle takes up freely in `configuration` (m,)."""

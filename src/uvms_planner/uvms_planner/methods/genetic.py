@@ -11,6 +11,8 @@ from uvms_planner.evolution import EvolutionSettings, evolve
 from uvms_planner.interfaces import StepMethod
 from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project
+from uvms_planner.whole_path import PathPlan, PathProblem, solve
+from uvms_planner.whole_path.solve import Progress
 
 
 class Genetic(StepMethod):
@@ -35,6 +37,10 @@ class Genetic(StepMethod):
         return Choice(
             found, increment, distance, angle, violation, cost, evaluations, feasible, discarded
         )
+
+    def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
+        """The best plan over a whole path: the search finds the basin, and the solver its bottom."""
+        return solve(problem, self._seed, progress)
 
 
 def settings(config: GeneticConfig) -> EvolutionSettings:
