@@ -3,7 +3,6 @@
 from typing import NamedTuple
 
 import numpy as np
-from numpy.linalg import norm
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
@@ -138,7 +137,8 @@ def _position_curve(times: Array, points: Array) -> _Curve:
     """Through `points` (n, 3) at `times` (n,)."""
     steps = np.diff(points, axis=0)
     slope, second = np.zeros_like(points), np.zeros_like(points)
-    for part in path_nodes.moving_stretches(~steps.any(axis=1)):
+    lengths: Array = np.linalg.norm(steps, axis=1)
+    for part in path_nodes.moving_stretches(lengths == 0.0):
         around = np.pad(points[part], ((path_nodes.REACH,) * 2, (0, 0)), mode="edge")
         values = path_nodes.windows(around) - points[part][:, None]
         stencil = path_nodes.windows(path_nodes.with_rest(times[part]))
@@ -162,8 +162,8 @@ class _Turn:
         self._rotations = Rotation.from_quat(_same_hemisphere(quaternions))
         self._arcs = (self._rotations[1:] * self._rotations[:-1].inv()).as_rotvec()
         omega, alpha = np.zeros((len(times), 3)), np.zeros((len(times), 3))
-        standing = np.asarray(norm(self._arcs, axis=1) <= SAME_ORIENTATION_RAD)
-        for part in path_nodes.moving_stretches(standing):
+        lengths: Array = np.linalg.norm(self._arcs, axis=1)
+        for part in path_nodes.moving_stretches(lengths <= SAME_ORIENTATION_RAD):
             omega[part], alpha[part] = self._stretch(times[part], part)
         ends = _ends_of_turns(self._arcs, omega, alpha)
         self._phi = _Curve(times, np.zeros((len(times), 3)), self._arcs, ends)
