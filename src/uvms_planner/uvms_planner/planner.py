@@ -103,7 +103,7 @@ class MotionPlanner:
         self._proposed = False
 
     def begin(self, proposal: Proposal) -> None:
-        """Begin what was planned with the first segment that is not planned yet, or once at rest."""
+        """Begin what was proposed with the first segment that is not planned yet, or at rest."""
         self._proposed = False
         if self._plan is None:
             raise GoalRejected("the planner restarted while the goal was being planned")

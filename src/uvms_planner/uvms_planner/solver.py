@@ -55,7 +55,9 @@ class StepSolver:
         Only where `plans_paths`.
         """
         posture = slice(VEHICLE - 1, None)
-        own = Posture(start.configuration[posture], start.rate[posture], start.acceleration[posture])
+        own = Posture(
+            start.configuration[posture], start.rate[posture], start.acceleration[posture]
+        )
         problem = PathProblem(self.model, ToolPath(path), path.duration, own, self.motion_limits)
         plan: PathPlan = self._method.plan_path(problem, progress)  # type: ignore[attr-defined]
         return plan

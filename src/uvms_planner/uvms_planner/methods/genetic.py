@@ -39,7 +39,7 @@ class Genetic(StepMethod):
         )
 
     def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
-        """The best plan over a whole path: the search finds the basin, and the solver its bottom."""
+        """The best plan over a whole path: a search for the basin, a solver for its bottom."""
         return solve(problem, self._seed, progress)
 
 

@@ -1,5 +1,8 @@
 """Node `motion_planner`: plans vehicle and joints every step; serves the two path actions."""
 
+from collections.abc import Callable
+from functools import partial
+from threading import Thread
 from typing import Any
 
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
@@ -72,20 +75,46 @@ class MotionPlannerNode(PartNode):
             cls,
             action.name,
             execute_callback=self._execute,
-            goal_callback=lambda goal: self._admit_goal(action, goal),
+            goal_callback=partial(self._admit_goal, action),
             handle_accepted_callback=lambda handle: self._begin(cls, handle),
             cancel_callback=self._cancel,
         )
 
-    def _admit_goal(self, action: Action, goal: Any) -> GoalResponse:
+    async def _admit_goal(self, action: Action, goal: Any) -> GoalResponse:
+        planner = self.part.planner
         try:
-            self.part.planner.accept(from_message(action, goal, self.vehicle.joint_names))
+            proposal = planner.propose(from_message(action, goal, self.vehicle.joint_names))
+            try:
+                await self._beside(partial(proposal.work, self._tell))
+            except BaseException:
+                planner.withdraw()
+                raise
+            self.part.planner.begin(proposal)
         except UvmsError as fault:
             self.get_logger().error(f"goal rejected: {fault}")
             self.report(self._stamp, diagnostics.ERROR, str(fault))
             return GoalResponse.REJECT
         self._accepted += 1
         return GoalResponse.ACCEPT
+
+    async def _beside(self, work: Callable[[], None]) -> None:
+        """Do work that takes its time in a thread, while the ticks go on."""
+        done: Future = Future(executor=self.executor)
+
+        def run() -> None:
+            try:
+                work()
+            except BaseException as fault:
+                done.set_exception(fault)
+            else:
+                done.set_result(None)
+
+        Thread(target=run, name="planning", daemon=True).start()
+        await done
+
+    def _tell(self, share: float, text: str) -> None:
+        """How far planning is, at most once a second."""
+        self.get_logger().info(f"{text}: {share:.0%}", throttle_duration_sec=1.0)
 
     def _begin(self, cls: Any, handle: ServerGoalHandle) -> None:
         self._type, self._handle, self._outcome = cls, handle, Future()
