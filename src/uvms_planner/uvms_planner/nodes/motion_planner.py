@@ -85,7 +85,7 @@ class MotionPlannerNode(PartNode):
         try:
             proposal = planner.propose(from_message(action, goal, self.vehicle.joint_names))
             try:
-                await self._beside(partial(proposal.work, self._tell))
+                await self._beside(partial(proposal.work, self._say_progress))
             except BaseException:
                 planner.withdraw()
                 raise
@@ -112,7 +112,7 @@ class MotionPlannerNode(PartNode):
         Thread(target=run, name="planning", daemon=True).start()
         await done
 
-    def _tell(self, share: float, text: str) -> None:
+    def _say_progress(self, share: float, text: str) -> None:
         """How far planning is, at most once a second."""
         self.get_logger().info(f"{text}: {share:.0%}", throttle_duration_sec=1.0)
 
