@@ -10,6 +10,8 @@ import numpy as np
 
 from uvms_dynamics.kernels.jit import inner
 
+TRUST = 100.0  # how far a multiplier may be from the barrier's own
+
 
 @inner
 def multiplier(g, mu, rho):
@@ -27,3 +29,24 @@ def penalty(g, mu, rho):
     s, t = mu / z, mu / y
     value = rho * t - mu * (1.0 + np.log(s) + np.log(t * rho / mu))
     return value, z, 1.0 / (s / z + t / y)
+
+
+@inner
+def linearised(g, mu, rho, memory, i, j, k):
+    """Slope and curvature of the penalty for a primal-dual Newton step.
+
+    memory[i, j] remembers in its columns k and k + 1 what a step changes the multiplier z into,
+    z = a + w g; a < 0 where there has been none. The system is that of z s = mu and
+    (rho - z) t = mu with the slacks at their best, so that lowering mu does not shorten the steps.
+    """
+    ideal, rest = multiplier(g, mu, rho), multiplier(-g, mu, rho)
+    z = memory[i, j, k] + memory[i, j, k + 1] * g if memory[i, j, k] >= 0.0 else ideal
+    z = min(max(z, ideal / TRUST), ideal * TRUST)
+    y = min(max(rho - z, rest / TRUST), rest * TRUST)
+    z = z if z < 0.5 * rho else rho - y
+    y = y if z >= 0.5 * rho else rho - z
+    s, t = mu / ideal, mu / rest
+    w = 1.0 / (s / z + t / y)
+    a = z + w * (mu / z - mu / y)
+    memory[i, j, k], memory[i, j, k + 1] = max(a, 0.0), w
+    return a + w * g, w

@@ -3,8 +3,10 @@
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from uvms_core.signals import Array
+from uvms_planner.constraints import free_attitude
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path import assembly
 from uvms_planner.whole_path.assembly import Bounds, Grid, Rows, Wishes
@@ -15,13 +17,14 @@ from uvms_planner.whole_path.spline import (
     FIXED,
     basis_at,
     end_coefficients,
+    greville,
     knots_at,
     rate_factors,
 )
 
 TIGHT = 0.99  # of sampled limits: what a value may gain between two samples
-ATTITUDE_PRICE = 0.1
-"""A start may be beyond the free attitude's limits: no acceleration is exceeded to come back."""
+BEYOND_PRICE = 1e-3
+"""Of the free attitude where the start is beyond it: no joint is overtaxed to come back."""
 NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
 
 
@@ -49,6 +52,14 @@ class Discrete:
             self.problem.model, self.water, self.grid, self.target, self.bounds, self.rows,
             self.wishes,
         )  # fmt: skip
+
+    def taken_from(self, knots: Array, coefficients: Array) -> Array:
+        """Coefficients (K, d) of the spline on these knots that is nearest to one on others."""
+        sites = np.clip(greville(self.knots), knots[0], knots[-1])
+        basis = basis_at(knots, sites)
+        near = coefficients[basis.first[:, None] + np.arange(DEGREE + 1)]
+        values = np.einsum("ka,kad->kd", basis.values[:, 0], near)
+        return self.complete(make_interp_spline(sites, values, k=DEGREE, t=self.knots).c)
 
     def disturbance(self, coefficients: Array) -> float:
         """J on the samples of the quadrature."""
@@ -102,8 +113,15 @@ def _bounds(problem: PathProblem, water: Water, tight: float) -> Bounds:
     lower, scale = -upper, np.where(np.isfinite(upper), upper, 1.0)
     lower[at : at + 3], upper[at : at + 3] = limits.lower[:3], limits.upper[:3]
     price = np.ones(size)
-    price[roll : roll + 2] = ATTITUDE_PRICE
+    if not _starts_level(problem):
+        price[roll : roll + 2] = BEYOND_PRICE
     return Bounds(lower, upper, scale, price)
+
+
+def _starts_level(problem: PathProblem) -> bool:
+    """Whether the vehicle would be within its free attitude's limits at the start."""
+    roll, pitch = free_attitude(problem.model, problem.start.value[1:])
+    return bool(abs(roll) < problem.limits.roll_max and abs(pitch) < problem.limits.pitch_max)
 
 
 def _rows(problem: PathProblem, knots: Array, numbers: Array) -> Rows:

@@ -1,6 +1,7 @@
 """The best plan over a whole path that can be found: a search for the basin, then the optimum."""
 
 from collections.abc import Callable
+from typing import NamedTuple
 
 import numpy as np
 
@@ -10,20 +11,29 @@ from uvms_planner.whole_path.newton import Schedule, solve_on_knots
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan import PathPlan
 
-FIRST_S = 0.1  # the first piece: a posture that is left quickly needs fine pieces
-GROWTH = 1.15  # from one piece to the next
-PIECES = 240  # of a path of medium length
-FINEST_S, COARSEST_S = 0.5, 3.0  # of the pieces after the beginning
+
+class Pieces(NamedTuple):
+    """How a path is cut into the spline's pieces."""
+
+    first: float  # s; a posture that is left quickly needs fine pieces
+    growth: float  # from one piece to the next
+    count: int  # of a path of medium length
+    least: float  # s, of the pieces after the beginning
+    greatest: float  # s
+
+
+FINE = Pieces(first=0.1, growth=1.15, count=240, least=0.5, greatest=3.0)
+COARSE = Pieces(first=0.4, growth=1.4, count=50, least=1.0, greatest=12.0)
 
 Progress = Callable[[float, str], None]
 
 
-def graded_breaks(duration: float) -> Array:
-    """Ends of the pieces (b,): fine at the beginning, even later; as many as the path is long."""
-    spacing = float(np.clip(duration / PIECES, FINEST_S, COARSEST_S))
-    lengths = [min(FIRST_S, duration / 8)]
+def graded_breaks(duration: float, pieces: Pieces) -> Array:
+    """Ends of the pieces (b,), s: fine at the beginning, even later."""
+    spacing = float(np.clip(duration / pieces.count, pieces.least, pieces.greatest))
+    lengths = [min(pieces.first, duration / 8)]
     while sum(lengths) < duration:
-        lengths.append(min(lengths[-1] * GROWTH, spacing))
+        lengths.append(min(lengths[-1] * pieces.growth, spacing))
     breaks = np.concatenate([[0.0], np.cumsum(lengths)])
     return breaks * duration / breaks[-1]
 
@@ -35,15 +45,13 @@ def solve(
 
     Where the limits cannot be kept, the plan breaks them least; its report says which and where.
     """
-    discrete = discretise(problem, graded_breaks(problem.duration))
-    schedule = Schedule()
-    done = [0]
-
-    def tick():
-        done[0] += 1
-        progress(min(done[0] / 40, 0.99), "whole path")
-
-    held = np.tile(problem.start.value, (len(discrete.grid.numbers), 1))
-    solution = solve_on_knots(discrete, held, schedule, tick)
+    coarse = discretise(problem, graded_breaks(problem.duration, COARSE))
+    fine = discretise(problem, graded_breaks(problem.duration, FINE))
+    progress(0.0, "coarse plan")
+    held = np.tile(problem.start.value, (len(coarse.grid.numbers), 1))
+    rough = solve_on_knots(coarse, held, Schedule())
+    progress(0.3, "whole path")
+    begin = fine.taken_from(coarse.knots, rough.coefficients)
+    solution = solve_on_knots(fine, begin, Schedule(first=1e-4))
     progress(1.0, "whole path")
-    return PathPlan(problem, discrete.knots, solution.coefficients, solution.iterations)
+    return PathPlan(problem, fine.knots, solution.coefficients, solution.iterations)
