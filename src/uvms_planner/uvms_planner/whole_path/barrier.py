@@ -40,13 +40,15 @@ def linearised(g, mu, rho, memory, i, j, k):
     (rho - z) t = mu with the slacks at their best, so that lowering mu does not shorten the steps.
     """
     ideal, rest = multiplier(g, mu, rho), multiplier(-g, mu, rho)
-    z = memory[i, j, k] + memory[i, j, k + 1] * g if memory[i, j, k] >= 0.0 else ideal
-    z = min(max(z, ideal / TRUST), ideal * TRUST)
-    y = min(max(rho - z, rest / TRUST), rest * TRUST)
-    z = z if z < 0.5 * rho else rho - y
-    y = y if z >= 0.5 * rho else rho - z
-    s, t = mu / ideal, mu / rest
-    w = 1.0 / (s / z + t / y)
-    a = z + w * (mu / z - mu / y)
+    if g > 0.0:
+        # The slope falls to almost nothing at g = 0, which the curvature here does not show.
+        z, y, w = ideal, rest, max(1.0 / (mu / ideal**2 + mu / rest**2), ideal / g)
+    else:
+        z = memory[i, j, k] + memory[i, j, k + 1] * g if memory[i, j, k] >= 0.0 else ideal
+        z = min(max(z, ideal / TRUST), ideal * TRUST)
+        y = min(max(rho - z, rest / TRUST), rest * TRUST)
+        z = rho - y
+        w = 1.0 / (mu / (ideal * z) + mu / (rest * y))
+    a = z + w * (mu / z - mu / y) if g <= 0.0 else z - w * g
     memory[i, j, k], memory[i, j, k + 1] = max(a, 0.0), w
     return a + w * g, w

@@ -10,24 +10,24 @@ from uvms_planner.whole_path import assembly
 from uvms_planner.whole_path.assembly import FUNCTIONS
 from uvms_planner.whole_path.discrete import Discrete
 
-SUFFICIENT = 0.01  # share of the promised decrease that a step must bring
+PLENTY = 0.5  # share of the promised decrease at which a step is not shortened
+SHORTER = 0.75  # from one length of a step to the next
 FIRST_DAMPING = 1e-4  # of the diagonal, Marquardt's
+LOOSER = 20.0  # tolerance while the barrier is still to be lowered
 TINY = 1e-12  # added to the diagonal
 TRIES = 8  # dampings, and for each
-HALVINGS = 4  # lengths of a step
+LENGTHS = 12  # of a step
 
 
 @dataclass(frozen=True)
 class Schedule:
     """How the barrier is lowered."""
 
-    first: float = 1e-1
-    last: float = 1e-5
-    factor: float = 0.1
-    price: float = 1e3  # rho of a broken limit
-    steps: int = 6  # at most for one barrier
-    final_steps: int = 12
-    tolerance: float = 1e-4  # decrease, relative to the cost, below which it has converged
+    barriers: tuple[float, ...] = (1e-1, 1e-2, 1e-3, 1e-4)
+    price: float = 1e3  # rho of a broken limit, N^2 (N^2 m^2) for a whole limit
+    steps: int = 5  # at most for one barrier
+    final_steps: int = 8
+    tolerance: float = 1e-4  # gain, relative to the disturbance, below which it has converged
 
 
 @dataclass(frozen=True)
@@ -76,45 +76,51 @@ class Iteration:
             except LinAlgError:
                 self.damping = max(10 * self.damping, 1e-6)
                 continue
-            promised = -0.5 * float(gradient @ move)
-            gained = self._search(move, value, promised, mu)
+            here = -0.5 * float(gradient @ move)
+            promised = max(promised, here)
+            gained = self._search(move, value, here, mu)
             if gained is not None:
                 return gained, promised
-            self.damping = max(30 * self.damping, 1e-6)
+            self.damping = max(10 * self.damping, 1e-6)
         self.forget()
+        self.damping = FIRST_DAMPING
         return 0.0, promised
 
     def _search(self, move: Array, value: float, promised: float, mu: float) -> float | None:
-        """Go along `move` as far as it helps; what was gained, None for nowhere."""
-        length = 1.0
-        for _ in range(HALVINGS):
+        """Go along `move` as far as it helps most; what was gained, None for nowhere."""
+        length, best = 1.0, (0.0, 0.0, self.coefficients)
+        for _ in range(LENGTHS):
             new = moved(self.discrete, self.coefficients, length * move)
             gained = value - self.cost(mu, new)
-            if gained >= SUFFICIENT * length * promised:
-                self.damping = max(self.damping * (0.1 if length == 1.0 else 2.0), 1e-9)
-                self.coefficients = new
-                return gained
-            length *= 0.4
-        return None
+            if gained < best[0]:
+                break
+            if gained > 0.0:
+                best = (gained, length, new)
+            if gained >= PLENTY * length * promised:
+                break
+            length *= SHORTER
+        gained, length, new = best
+        if length == 0.0:
+            return None
+        self.damping = max(self.damping * (0.03 if length > 0.6 else 2.0), 1e-9)
+        self.coefficients = new
+        return gained
 
 
 def solve_on_knots(discrete: Discrete, start: Array, schedule: Schedule, tick=lambda: None):
     """A local optimum from coefficients `start` (K, d)."""
-    point, mu, count = Iteration(discrete, start, schedule.price), schedule.first, 0
-    scale = 0.5 * discrete.disturbance(point.coefficients)
-    while True:
-        final = mu <= schedule.last * 1.001
+    point, count = Iteration(discrete, start, schedule.price), 0
+    for number, mu in enumerate(schedule.barriers):
+        final = number == len(schedule.barriers) - 1
         for _ in range(schedule.final_steps if final else schedule.steps):
             gained, promised = point.step(mu)
             count += 1
             tick()
-            now = 0.5 * discrete.disturbance(point.coefficients)
-            scale = min(scale, now)
-            if max(gained, promised) <= schedule.tolerance * scale * (1 if final else 100):
+            scale = 0.5 * discrete.disturbance(point.coefficients)
+            tolerance = schedule.tolerance * (1 if final else LOOSER)
+            if max(gained, promised) <= tolerance * scale:
                 break
-        if final:
-            return Solution(point.coefficients, point.cost(mu), count)
-        mu = max(mu * schedule.factor, schedule.last)
+    return Solution(point.coefficients, point.cost(mu), count)
 
 
 def moved(discrete: Discrete, c: Array, move: Array) -> Array:

@@ -52,6 +52,6 @@ def solve(
     rough = solve_on_knots(coarse, held, Schedule())
     progress(0.3, "whole path")
     begin = fine.taken_from(coarse.knots, rough.coefficients)
-    solution = solve_on_knots(fine, begin, Schedule(first=1e-4))
+    solution = solve_on_knots(fine, begin, Schedule(barriers=(1e-2, 1e-3, 1e-4, 1e-5)))
     progress(1.0, "whole path")
     return PathPlan(problem, fine.knots, solution.coefficients, solution.iterations)
