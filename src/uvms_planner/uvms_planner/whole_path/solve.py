@@ -22,8 +22,8 @@ class Pieces(NamedTuple):
     greatest: float  # s
 
 
-FINE = Pieces(first=0.1, growth=1.15, count=240, least=0.5, greatest=3.0)
-COARSE = Pieces(first=0.4, growth=1.4, count=50, least=1.0, greatest=12.0)
+COARSE = Pieces(first=0.4, growth=1.4, count=50, least=2.0, greatest=12.0)
+SPLIT = 4  # fine pieces of a coarse one: what the coarse spline is, the fine one can be
 
 Progress = Callable[[float, str], None]
 
@@ -38,6 +38,13 @@ def graded_breaks(duration: float, pieces: Pieces) -> Array:
     return breaks * duration / breaks[-1]
 
 
+def split(breaks: Array, parts: int) -> Array:
+    """The same ends, and those of each piece's equal parts."""
+    shares = np.arange(parts) / parts
+    inner = breaks[:-1, None] + np.diff(breaks)[:, None] * shares
+    return np.append(inner.ravel(), breaks[-1])
+
+
 def solve(
     problem: PathProblem, seed: int = 0, progress: Progress = lambda share, text: None
 ) -> PathPlan:
@@ -46,12 +53,12 @@ def solve(
     Where the limits cannot be kept, the plan breaks them least; its report says which and where.
     """
     coarse = discretise(problem, graded_breaks(problem.duration, COARSE))
-    fine = discretise(problem, graded_breaks(problem.duration, FINE))
+    fine = discretise(problem, split(graded_breaks(problem.duration, COARSE), SPLIT))
     progress(0.0, "coarse plan")
     held = np.tile(problem.start.value, (len(coarse.grid.numbers), 1))
     rough = solve_on_knots(coarse, held, Schedule())
     progress(0.3, "whole path")
     begin = fine.taken_from(coarse.knots, rough.coefficients)
-    solution = solve_on_knots(fine, begin, Schedule(barriers=(1e-2, 1e-3, 1e-4, 1e-5)))
+    solution = solve_on_knots(fine, begin, Schedule(barriers=(1e-3, 1e-4, 1e-5)))
     progress(1.0, "whole path")
     return PathPlan(problem, fine.knots, solution.coefficients, solution.iterations)
