@@ -1,6 +1,6 @@
 """The problem on knots: what the kernels of `assembly` take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
@@ -52,6 +52,14 @@ class Discrete:
             self.problem.model, self.water, self.grid, self.target, self.bounds, self.rows,
             self.wishes,
         )  # fmt: skip
+
+    def tightened(self, excess: Array) -> "Discrete":
+        """The same with the sampled limits less by the shares `excess` (v,) where positive."""
+        share = 1 - np.maximum(excess, 0.0)
+        at = POSITION - WRENCHES
+        lower, upper = self.bounds.lower.copy(), self.bounds.upper.copy()
+        lower[at + 3 :], upper[at + 3 :] = (share * b for b in (lower[at + 3 :], upper[at + 3 :]))
+        return replace(self, bounds=self.bounds._replace(lower=lower, upper=upper))
 
     def taken_from(self, knots: Array, coefficients: Array) -> Array:
         """Coefficients (K, d) of the spline on these knots that is nearest to one on others."""

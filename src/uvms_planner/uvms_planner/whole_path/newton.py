@@ -1,6 +1,6 @@
 """Damped Gauss-Newton steps with a banded Cholesky factor, the barrier lowered on the way."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.linalg import LinAlgError, solveh_banded
@@ -28,6 +28,15 @@ class Schedule:
     steps: int = 5  # at most for one barrier
     final_steps: int = 8
     tolerance: float = 1e-4  # gain, relative to the disturbance, below which it has converged
+
+    @property
+    def most_steps(self) -> int:
+        """Steps that it takes at most."""
+        return self.steps * (len(self.barriers) - 1) + self.final_steps
+
+    def at_price(self, price: float) -> "Schedule":
+        """The same with another price."""
+        return replace(self, price=price)
 
 
 @dataclass(frozen=True)

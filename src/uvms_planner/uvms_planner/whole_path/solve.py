@@ -1,48 +1,25 @@
 """The best plan over a whole path that can be found: a search for the basin, then the optimum."""
 
 from collections.abc import Callable
-from typing import NamedTuple
 
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_planner.whole_path.discrete import discretise
+from uvms_planner.whole_path.discrete import Discrete, discretise
 from uvms_planner.whole_path.newton import Schedule, solve_on_knots
 from uvms_planner.whole_path.path_problem import PathProblem
+from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
 from uvms_planner.whole_path.plan import PathPlan
 
-
-class Pieces(NamedTuple):
-    """How a path is cut into the spline's pieces."""
-
-    first: float  # s; a posture that is left quickly needs fine pieces
-    growth: float  # from one piece to the next
-    count: int  # of a path of medium length
-    least: float  # s, of the pieces after the beginning
-    greatest: float  # s
-
-
-COARSE = Pieces(first=0.4, growth=1.4, count=50, least=2.0, greatest=12.0)
-SPLIT = 4  # fine pieces of a coarse one: what the coarse spline is, the fine one can be
+ROUGH = Schedule(barriers=(1e-1, 1e-2, 1e-3, 1e-4))
+FULL = Schedule(barriers=(1e-3, 1e-4, 1e-5))
+REPAIR = Schedule(barriers=(1e-4, 1e-5))
+REPAIRS = 3  # times at most that limits are tightened where a plan exceeds them between samples
+SPARE = 2e-3  # share of a limit by which it is tightened more than it was exceeded
+HIGHER = 10.0  # price of a limit from one repair to the next
+HOPELESS = 0.1  # excess that no tightening mends
 
 Progress = Callable[[float, str], None]
-
-
-def graded_breaks(duration: float, pieces: Pieces) -> Array:
-    """Ends of the pieces (b,), s: fine at the beginning, even later."""
-    spacing = float(np.clip(duration / pieces.count, pieces.least, pieces.greatest))
-    lengths = [min(pieces.first, duration / 8)]
-    while sum(lengths) < duration:
-        lengths.append(min(lengths[-1] * pieces.growth, spacing))
-    breaks = np.concatenate([[0.0], np.cumsum(lengths)])
-    return breaks * duration / breaks[-1]
-
-
-def split(breaks: Array, parts: int) -> Array:
-    """The same ends, and those of each piece's equal parts."""
-    shares = np.arange(parts) / parts
-    inner = breaks[:-1, None] + np.diff(breaks)[:, None] * shares
-    return np.append(inner.ravel(), breaks[-1])
 
 
 def solve(
@@ -52,13 +29,39 @@ def solve(
 
     Where the limits cannot be kept, the plan breaks them least; its report says which and where.
     """
-    coarse = discretise(problem, graded_breaks(problem.duration, COARSE))
-    fine = discretise(problem, split(graded_breaks(problem.duration, COARSE), SPLIT))
-    progress(0.0, "coarse plan")
+    breaks = coarse_breaks(problem)
+    coarse, fine = discretise(problem, breaks), discretise(problem, fine_breaks(breaks))
+    progress(0.0, "searching")
     held = np.tile(problem.start.value, (len(coarse.grid.numbers), 1))
-    rough = solve_on_knots(coarse, held, Schedule())
-    progress(0.3, "whole path")
+    rough = solve_on_knots(coarse, held, ROUGH)
+    progress(0.4, "whole path")
     begin = fine.taken_from(coarse.knots, rough.coefficients)
-    solution = solve_on_knots(fine, begin, Schedule(barriers=(1e-3, 1e-4, 1e-5)))
+    plan = _polished(fine, begin, lambda share: progress(0.4 + 0.6 * share, "whole path"))
     progress(1.0, "whole path")
-    return PathPlan(problem, fine.knots, solution.coefficients, solution.iterations)
+    return plan
+
+
+def _polished(discrete: Discrete, begin: Array, progress: Callable[[float], None]) -> PathPlan:
+    """The optimum near `begin` that keeps the limits between the samples as well."""
+    solution = solve_on_knots(discrete, begin, FULL, ticker(progress, FULL))
+    count, price = solution.iterations, FULL.price
+    for _ in range(REPAIRS):
+        plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
+        excess = plan.report.excess
+        if plan.report.feasible or excess.max() > HOPELESS:
+            return plan
+        discrete, price = discrete.tightened(excess + SPARE), HIGHER * price
+        solution = solve_on_knots(discrete, solution.coefficients, REPAIR.at_price(price))
+        count += solution.iterations
+    return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
+
+
+def ticker(progress: Callable[[float], None], schedule: Schedule) -> Callable[[], None]:
+    """Reports after each step how much of the schedule is done at least."""
+    done, most = [0], schedule.most_steps
+
+    def tick() -> None:
+        done[0] += 1
+        progress(done[0] / most)
+
+    return tick
