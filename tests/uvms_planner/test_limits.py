@@ -4,12 +4,23 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from planner_rig import START, reference_vehicle
 
+from uvms_dynamics import build_model
 from uvms_planner.config import LimitsConfig, PlannerConfig
-from uvms_planner.limits import JointLimits, StepLimits
+from uvms_planner.limits import JointLimits, MotionLimits, StepLimits
 from uvms_planner.methods.arm_only import ArmOnly
 
 JOINTS = JointLimits.of(reference_vehicle())
-LIMITS = StepLimits.of(JOINTS, LimitsConfig(), 0.5)
+GIVEN = LimitsConfig(
+    translation_rate_m_s=0.05,
+    translation_acceleration_m_s2=0.01,
+    yaw_rate_deg_s=1.0,
+    yaw_acceleration_deg_s2=0.5,
+    base_joint_rate_deg_s=4.0,
+    depth_min_m=0.4,
+)
+LIMITS = StepLimits.of(
+    MotionLimits.of(reference_vehicle(), build_model(reference_vehicle()), GIVEN), 0.5
+)
 
 
 def test_a_step_is_at_most_what_the_rates_allow():

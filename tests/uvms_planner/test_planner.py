@@ -137,7 +137,7 @@ def test_the_same_seed_plans_the_same_and_another_does_not():
 
 
 def test_the_attitude_limits_bring_the_arm_back_and_are_told_until_then():
-    run = drive(q_deg=(40.0, 20.0, 60.0, 0.0))
+    run = drive(q_deg=(40.0, 20.0, 60.0, 0.0), limits={"translation_rate_m_s": 0.05})
     hold = PathSpec(phases=(PathPhase(duration_s=40.0),))
     assert followed(run, hold)[0].success
     violations = [s.step.attitude_violation for s in run.steps if s.step is not None]

@@ -9,24 +9,48 @@ from uvms_core.config import Config
 from uvms_core.plugin import PluginConfig, Slot
 from uvms_planner.interfaces import StepMethod
 
+FASTEST_M_S = 2.0
+"""m/s; beyond it a path is a transit of the vehicle and no work of its arm."""
+FASTEST_TURN_DEG_S = 45.0
+"""deg/s, and deg/s^2: a vehicle that turns faster throws its arm about."""
+
 
 class LimitsConfig(Config):
-    """Limits of the planned motion, in addition to the joint limits of the vehicle file."""
+    """Limits of the planned motion. Where one is not given it follows from the vehicle file."""
 
-    translation_rate_m_s: float = Field(
-        0.05, gt=0, le=2.0, description="m/s, planned speed of the vehicle along each world axis"
+    translation_rate_m_s: float | None = Field(
+        None,
+        gt=0,
+        le=FASTEST_M_S,
+        description="m/s, planned speed of the vehicle along each world axis; none: what half of"
+        " its thrust holds against its drag, in the plane along the weaker of surge and sway",
     )
-    translation_acceleration_m_s2: float = Field(
-        0.01, gt=0, le=2.0, description="m/s^2, planned acceleration of the vehicle along each axis"
+    translation_acceleration_m_s2: float | None = Field(
+        None,
+        gt=0,
+        le=2.0,
+        description="m/s^2, planned acceleration of the vehicle along each world axis; none: what a"
+        " quarter of its thrust gives its mass and added mass",
     )
-    yaw_rate_deg_s: float = Field(
-        1.0, gt=0, le=45.0, description="deg/s, planned turning rate of the vehicle"
+    yaw_rate_deg_s: float | None = Field(
+        None,
+        gt=0,
+        le=FASTEST_TURN_DEG_S,
+        description="deg/s, planned turning rate of the vehicle; none: by the same rule, and so"
+        " that the tool at the arm's full length goes no faster than the vehicle may",
     )
-    yaw_acceleration_deg_s2: float = Field(
-        0.5, gt=0, le=45.0, description="deg/s^2, planned turning acceleration of the vehicle"
+    yaw_acceleration_deg_s2: float | None = Field(
+        None,
+        gt=0,
+        le=FASTEST_TURN_DEG_S,
+        description="deg/s^2, planned turning acceleration of the vehicle; none: likewise",
     )
-    base_joint_rate_deg_s: float = Field(
-        4.0, gt=0, le=180.0, description="deg/s, planned rate of joint 1: 2 deg a step of 0.5 s"
+    base_joint_rate_deg_s: float | None = Field(
+        None,
+        gt=0,
+        le=180.0,
+        description="deg/s, planned rate of joint 1, which swings the whole arm; none: as of the"
+        " other joints",
     )
     joint_rate_fraction: float = Field(
         0.4, gt=0, le=1.0, description="planned joint rate over the vehicle file's limit"
@@ -37,11 +61,19 @@ class LimitsConfig(Config):
     joint_margin_deg: float = Field(
         2.0, ge=0, le=30.0, description="deg, distance that the plan keeps from each joint limit"
     )
-    depth_min_m: float = Field(
-        0.4, ge=0, le=1000.0, description="m, least planned depth of the vehicle's origin"
+    depth_min_m: float | None = Field(
+        None,
+        ge=0,
+        le=1000.0,
+        description="m, least planned depth of the vehicle's origin; none: the radius of a sphere"
+        " of the hull's volume, so that it stays under water",
     )
-    depth_max_m: float = Field(
-        1000.0, gt=0, le=12000.0, description="m, greatest planned depth of the vehicle's origin"
+    depth_max_m: float | None = Field(
+        None,
+        gt=0,
+        le=12000.0,
+        description="m, greatest planned depth of the vehicle's origin; none: as far above the"
+        " vehicle file's seabed, where it has one",
     )
     roll_max_deg: float = Field(
         5.0, gt=0, le=90.0, description="deg, roll that the vehicle may take up freely, eq. (17)"
@@ -80,14 +112,36 @@ class FitnessConfig(Config):
     lookahead_s: float = Field(
         6.0, ge=0, le=60.0, description="s, how far ahead the restoring wrench is judged"
     )
+    full_rate_m_s: float = Field(
+        0.05, gt=0, le=FASTEST_M_S, description="m/s, speed of the vehicle that costs its weight"
+    )
+    full_acceleration_m_s2: float = Field(
+        0.01, gt=0, le=2.0, description="m/s^2, acceleration of the vehicle that costs its weight"
+    )
+    full_yaw_rate_deg_s: float = Field(
+        1.0, gt=0, le=FASTEST_TURN_DEG_S, description="deg/s, turning rate that costs its weight"
+    )
+    full_yaw_acceleration_deg_s2: float = Field(
+        0.5,
+        gt=0,
+        le=FASTEST_TURN_DEG_S,
+        description="deg/s^2, turning acceleration that costs its weight",
+    )
+    full_base_joint_rate_deg_s: float = Field(
+        4.0,
+        gt=0,
+        le=180.0,
+        description="deg/s, rate of joint 1 that costs its weight, 2 deg a step of 0.5 s, unless"
+        " its planned limit is lower; of other joints it is the planned limit",
+    )
     smoothness_weight: float = Field(
-        1.0, ge=0, description="N^2 (or N^2 m^2) for a change of rate at full acceleration"
+        1.0, ge=0, description="N^2 (or N^2 m^2) for a change of rate at the full acceleration"
     )
     vehicle_motion_weight: float = Field(
-        0.2, ge=0, description="N^2 (or N^2 m^2) for the vehicle moving at its full rate"
+        0.2, ge=0, description="N^2 (or N^2 m^2) for the vehicle moving at the full rate"
     )
     joint_motion_weight: float = Field(
-        0.02, ge=0, description="N^2 (or N^2 m^2) for a joint moving at its full rate"
+        0.02, ge=0, description="N^2 (or N^2 m^2) for a joint moving at the full rate"
     )
 
 

@@ -105,10 +105,10 @@ def check_reachable(
     still = np.zeros_like(configuration)
     bounds = solver.limits.rate_increments(configuration)
     problem = solver.problem(configuration, still, targets[0], bounds)
-    frozen = problem.upper <= problem.lower
-    limits = solver.limits
+    frozen, limits = problem.upper <= problem.lower, solver.limits
+    reach = np.where(frozen, 0.0, limits.reach)
     index, distance, angle = follow_by_projection(
-        solver.model, problem, positions, rotations, limits.lower, limits.upper, frozen
+        solver.model, problem, positions, rotations, limits.lower, limits.upper, reach
     )
     if index < 0:
         return
@@ -121,7 +121,7 @@ def check_reachable(
 
 
 @kernel
-def follow_by_projection(model, problem, positions, rotations, lower, upper, frozen):
+def follow_by_projection(model, problem, positions, rotations, lower, upper, reach):
     """Project step by step along `positions` (k, 3); `problem`'s arrays are left where it failed.
 
     Returns the index of the first point that is not within e, with (m, rad) errors; -1 if none.
@@ -131,8 +131,8 @@ def follow_by_projection(model, problem, positions, rotations, lower, upper, fro
         for i in range(increment.shape[0]):
             room_up = max(upper[i] - problem.configuration[i], 0.0)
             room_down = max(problem.configuration[i] - lower[i], 0.0)
-            problem.upper[i] = 0.0 if frozen[i] else min(problem.reach[i], room_up)
-            problem.lower[i] = 0.0 if frozen[i] else -min(problem.reach[i], room_down)
+            problem.upper[i] = min(reach[i], room_up)
+            problem.lower[i] = -min(reach[i], room_down)
             increment[i] = 0.0
         copy_into(problem.position, positions[index])
         if problem.oriented:

@@ -4,7 +4,7 @@ import numpy as np
 from numpy.linalg import norm
 from scipy.spatial.transform import Rotation
 
-from uvms_core.end_effector_path import EndEffectorPath, PathSample
+from uvms_core.end_effector_path import EndEffectorPath, PathSample, PathSamples
 from uvms_core.signals import Array
 
 NEGLIGIBLE = 1e-7  # m or rad between the tool and the beginning of a path
@@ -48,20 +48,36 @@ class JoinedPath:
 
     def sample(self, time: float) -> PathSample:
         """As of EndEffectorPath."""
-        sample = self._path.sample(time)
-        if self.joined(time):
-            return sample
-        share, rate = self._fading(np.array([time]))
-        position = sample.position + share[0] * self._gap
-        velocity = sample.velocity + rate[0] * self._gap
-        if sample.quaternion is None or sample.angular_velocity is None:
-            return PathSample(position, velocity, None, None)
-        off = Rotation.from_rotvec(share[0] * self._turn)
-        turned = off * Rotation.from_quat(sample.quaternion)
-        angular_velocity = rate[0] * self._turn + off.apply(sample.angular_velocity)
-        return PathSample(position, velocity, turned.as_quat(), angular_velocity)
+        return self.samples(np.array([time])).first()
 
-    def _fading(self, times: Array) -> tuple[Array, Array]:
-        """Share (k,) of the gap that is left, and its rate in 1/s."""
-        u = np.clip(times / self._approach, 0.0, 1.0)
-        return 1 - u**3 * (10 - 15 * u + 6 * u**2), -30 * (u * (1 - u)) ** 2 / self._approach
+    def samples(self, times: Array) -> PathSamples:
+        """As of EndEffectorPath: position, velocity, acceleration, the same of the orientation."""
+        on_path = self._path.samples(times)
+        if self._begins_on_path or np.min(times) >= self._approach:
+            return on_path
+        share, rate, bend = (part[:, None] for part in self._fading(times))
+        position = on_path.position + share * self._gap
+        velocity = on_path.velocity + rate * self._gap
+        acceleration = on_path.acceleration + bend * self._gap
+        if not self.oriented:
+            return PathSamples(position, velocity, acceleration, None, None, None)
+        off = Rotation.from_rotvec(share * self._turn)
+        turning, bending = rate * self._turn, bend * self._turn
+        omega = off.apply(on_path.angular_velocity)
+        alpha = off.apply(on_path.angular_acceleration) + np.cross(turning, omega) + bending
+        quaternion = (off * Rotation.from_quat(on_path.quaternion)).as_quat()
+        return PathSamples(position, velocity, acceleration, quaternion, turning + omega, alpha)
+
+    def positions(self, times: Array) -> Array:
+        """Positions (k, 3) at `times` (k,) s."""
+        return self.samples(times).position
+
+    def _fading(self, times: Array) -> tuple[Array, Array, Array]:
+        """Share (k,) of the gap that is left, and its first and second derivative, 1/s and 1/s^2.
+
+        Before the start and after the approach both derivatives are zero, u being 0 or 1.
+        """
+        u = np.clip(np.asarray(times) / self._approach, 0.0, 1.0)
+        left = 1 - u**3 * (10 - 15 * u + 6 * u**2)
+        rate = -30 * (u * (1 - u)) ** 2 / self._approach
+        return left, rate, -60 * u * (1 - u) * (1 - 2 * u) / self._approach**2

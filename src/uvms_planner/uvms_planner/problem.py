@@ -22,8 +22,8 @@ class StepProblem(NamedTuple):
     previous: Array  # (m,) increment of the step before
     lower: Array  # (m,) least increment
     upper: Array  # (m,) greatest increment
-    reach: Array  # (m,) increment at full rate
-    jump: Array  # (m,) change of the increment at full acceleration
+    reach: Array  # (m,) increment that the cost counts as one, no bound
+    jump: Array  # (m,) change of the increment that the cost counts as one
     readiness: Array  # (m,) inverse weights of the projection
     motion_weights: Array  # (m,) cost of an increment of one reach
     position: Array  # (3,) m, target of the end effector at the end of the step

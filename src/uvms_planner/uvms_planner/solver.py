@@ -17,7 +17,7 @@ from uvms_planner.config import PlannerConfig
 from uvms_planner.constraints import free_attitude
 from uvms_planner.fitness import self_disturbance
 from uvms_planner.interfaces import StepMethod
-from uvms_planner.limits import JointLimits, StepLimits
+from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScales
 from uvms_planner.problem import VEHICLE, StepProblem
 
 
@@ -27,10 +27,12 @@ class StepSolver:
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int):
         self.model: Model = build_model(vehicle)
         self.joints = JointLimits.of(vehicle)
-        self.limits = StepLimits.of(self.joints, config.limits, config.step_s)
+        self.motion_limits = MotionLimits.of(vehicle, self.model, config.limits)
+        self.limits = StepLimits.of(self.motion_limits, config.step_s)
+        self._scales = StepScales.of(vehicle, config)
         self._config = config
         self._method: StepMethod = create(config, vehicle, seed)
-        self._readiness = self._method.readiness(_readiness(self.limits, config))
+        self._readiness = self._method.readiness(_readiness(self._scales, config))
         self._motion_weights = _motion_weights(len(self.limits.reach), config)
 
     @property
@@ -58,8 +60,8 @@ class StepSolver:
             previous=previous.copy(),
             lower=lower,
             upper=upper,
-            reach=self.limits.reach,
-            jump=self.limits.jump,
+            reach=self._scales.reach,
+            jump=self._scales.jump,
             readiness=self._readiness,
             motion_weights=self._motion_weights,
             position=np.array(target.position, dtype=float),
@@ -73,8 +75,8 @@ class StepSolver:
             lookahead=config.fitness.lookahead_s,
             combined=config.fitness.combined,
             smoothness_weight=config.fitness.smoothness_weight,
-            roll_max=np.deg2rad(config.limits.roll_max_deg),
-            pitch_max=np.deg2rad(config.limits.pitch_max_deg),
+            roll_max=self.motion_limits.roll_max,
+            pitch_max=self.motion_limits.pitch_max,
         )
 
     def choose(self, problem: StepProblem, index: int) -> Choice:
@@ -99,15 +101,15 @@ class StepSolver:
         return free_attitude(self.model, configuration[VEHICLE:].copy())
 
 
-def _readiness(limits: StepLimits, config: PlannerConfig) -> Array:
+def _readiness(scales: StepScales, config: PlannerConfig) -> Array:
     """Inverse weights (m,) of the projection: how ready each variable is to move."""
-    readiness = limits.reach**2
+    readiness = scales.reach**2
     readiness[:VEHICLE] *= config.projection.vehicle_share**2
     return readiness
 
 
 def _motion_weights(size: int, config: PlannerConfig) -> Array:
-    """Costs (m,) of each variable's motion at its full rate."""
+    """Costs (m,) of each variable's motion by one reach."""
     weights = np.full(size, config.fitness.joint_motion_weight)
     weights[:VEHICLE] = config.fitness.vehicle_motion_weight
     return weights
