@@ -1,17 +1,18 @@
 """The problem on knots: what the kernels of `assembly` take."""
 
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from uvms_core.signals import Array
-from uvms_planner.constraints import free_attitude
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path import assembly
 from uvms_planner.whole_path.assembly import Bounds, Grid, Rows, Wishes
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, WRENCHES, Target, Water
+from uvms_planner.whole_path.sample import Target, Water
+from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.spline import (
     DEGREE,
     FIXED,
@@ -23,9 +24,6 @@ from uvms_planner.whole_path.spline import (
 )
 
 TIGHT = 0.99  # of sampled limits: what a value may gain between two samples
-BEYOND_PRICE = 1e-3
-"""Of the free attitude where the start is beyond it: no joint is overtaxed to come back."""
-NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -55,11 +53,11 @@ class Discrete:
 
     def tightened(self, excess: Array) -> "Discrete":
         """The same with the sampled limits less by the shares `excess` (v,) where positive."""
-        share = 1 - np.maximum(excess, 0.0)
-        at = POSITION - WRENCHES
-        lower, upper = self.bounds.lower.copy(), self.bounds.upper.copy()
-        lower[at + 3 :], upper[at + 3 :] = (share * b for b in (lower[at + 3 :], upper[at + 3 :]))
-        return replace(self, bounds=self.bounds._replace(lower=lower, upper=upper))
+        less = np.maximum(excess, 0.0) * self.bounds.scale
+        bounds = self.bounds._replace(
+            lower=self.bounds.lower + less, upper=self.bounds.upper - less
+        )
+        return replace(self, bounds=bounds)
 
     def taken_from(self, knots: Array, coefficients: Array) -> Array:
         """Coefficients (K, d) of the spline on these knots that is nearest to one on others."""
@@ -94,9 +92,8 @@ def discretise(
     numbers = np.arange(count) - FIXED
     numbers[:FIXED], numbers[-FIXED:] = -1, count - 2 * FIXED
     grid = Grid(basis.first, basis.values, weights, numbers.astype(np.int64))
-    water = problem.water or NO_WATER
     return Discrete(
-        problem, knots, grid, problem.target(times), water, _bounds(problem, water, tight),
+        problem, knots, grid, problem.target(times), problem.water, sampled_bounds(problem, tight),
         _rows(problem, knots, numbers), _wishes(problem),
     )  # fmt: skip
 
@@ -108,31 +105,7 @@ def _quadrature(breaks: Array, points: int) -> tuple[Array, Array]:
     return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
 
 
-def _bounds(problem: PathProblem, water: Water, tight: float) -> Bounds:
-    limits, thrusters = problem.limits, len(water.shares)
-    size = THRUST - WRENCHES + thrusters
-    upper = np.full(size, np.inf)
-    at = POSITION - WRENCHES
-    upper[at + 3 : at + 6] = tight * limits.rate[:3]
-    upper[at + 6 : at + 9] = tight * limits.acceleration[:3]
-    roll = ATTITUDE - WRENCHES
-    upper[roll : roll + 2] = tight * limits.roll_max, tight * limits.pitch_max
-    upper[THRUST - WRENCHES :] = 1.0
-    lower, scale = -upper, np.where(np.isfinite(upper), upper, 1.0)
-    lower[at : at + 3], upper[at : at + 3] = limits.lower[:3], limits.upper[:3]
-    price = np.ones(size)
-    if not _starts_level(problem):
-        price[roll : roll + 2] = BEYOND_PRICE
-    return Bounds(lower, upper, scale, price)
-
-
-def _starts_level(problem: PathProblem) -> bool:
-    """Whether the vehicle would be within its free attitude's limits at the start."""
-    roll, pitch = free_attitude(problem.model, problem.start.value[1:])
-    return bool(abs(roll) < problem.limits.roll_max and abs(pitch) < problem.limits.pitch_max)
-
-
-def _rows(problem: PathProblem, knots: Array, numbers: Array) -> Rows:
+def _rows(problem: PathProblem, knots: Array, numbers: Any) -> Rows:
     """Bounds, rates and accelerations of the posture by the convex hull of the coefficients."""
     first, second = rate_factors(knots, DEGREE), rate_factors(knots[1:-1], DEGREE - 1)
     zero = np.zeros_like(first)

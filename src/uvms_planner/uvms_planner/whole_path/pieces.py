@@ -20,7 +20,8 @@ def coarse_breaks(problem: PathProblem) -> Array:
     duration = problem.duration
     longest = min(duration / PIECES, turn_time(problem) / PIECES_OF_TURN)
     spacing = float(np.clip(longest, SHORTEST_S, LONGEST_S))
-    lengths, total = [], 0.0
+    lengths: list[float] = []
+    total = 0.0
     while total < duration:
         following = lengths[-1] * GROWTH if lengths else min(FIRST_S, duration / 8)
         lengths.append(min(following, spacing))
