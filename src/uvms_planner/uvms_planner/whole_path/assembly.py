@@ -11,7 +11,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import inner, kernel, shared
-from uvms_planner.whole_path.barrier import penalty
+from uvms_planner.whole_path.barrier import linearised, penalty
 from uvms_planner.whole_path.sample import THRUST, TURN, WRENCHES, sample_jacobian, sample_values
 from uvms_planner.whole_path.spline import DEGREE
 
@@ -117,17 +117,27 @@ def _row_value(rows, r, coefficients):
 
 @shared
 def _row_cost(rows, r, coefficients, mu, rho):
-    """Penalty, slope and curvature of a linear limit, by its value."""
-    v, scale = _row_value(rows, r, coefficients), rows.scale[r]
-    total, slope, curvature = 0.0, 0.0, 0.0
+    """Penalty of a linear limit."""
+    v, total = _row_value(rows, r, coefficients), 0.0
     if rows.upper[r] < np.inf:
-        p, z, c = penalty((v - rows.upper[r]) / scale, mu, rho)
-        total, slope, curvature = p, z / scale, c / scale**2
+        total += penalty((v - rows.upper[r]) / rows.scale[r], mu, rho)[0]
     if rows.lower[r] > -np.inf:
-        p, z, c = penalty((rows.lower[r] - v) / scale, mu, rho)
-        total, slope, curvature = total + p, slope - z / scale, curvature + c / scale**2
-    w = rows.weights[r]
-    return w * total, w * slope, w * curvature
+        total += penalty((rows.lower[r] - v) / rows.scale[r], mu, rho)[0]
+    return rows.weights[r] * total
+
+
+@shared
+def _row_slope(rows, r, coefficients, mu, rho, memory):
+    """Slope and curvature of a linear limit, by its value."""
+    v, scale = _row_value(rows, r, coefficients), rows.scale[r]
+    slope, curvature = 0.0, 0.0
+    if rows.upper[r] < np.inf:
+        z, c = linearised((v - rows.upper[r]) / scale, mu, rho, memory, r, 0, 0)
+        slope, curvature = z / scale, c / scale**2
+    if rows.lower[r] > -np.inf:
+        z, c = linearised((rows.lower[r] - v) / scale, mu, rho, memory, r, 0, 2)
+        slope, curvature = slope - z / scale, curvature + c / scale**2
+    return rows.weights[r] * slope, rows.weights[r] * curvature
 
 
 @kernel
@@ -141,7 +151,7 @@ def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients
         one = _one_sample(model, water, grid, target, bounds, wishes, mu, rho, i, motion, values)
         total += grid.weights[i] * one
     for r in range(rows.first.shape[0]):
-        total += _row_cost(rows, r, coefficients, mu, rho)[0]
+        total += _row_cost(rows, r, coefficients, mu, rho)
     return total
 
 
@@ -161,7 +171,7 @@ def disturbance(model, water, grid, target, bounds, coefficients):
 
 @shared
 def _add_square(row, factor, slope, matrix, vector):
-    """matrix += factor row^T row (lower half), vector += slope row."""
+    """Matrix += factor row^T row (lower half), vector += slope row."""
     for a in range(row.shape[0]):
         x = factor * row[a]
         vector[a] += slope * row[a]
@@ -170,7 +180,7 @@ def _add_square(row, factor, slope, matrix, vector):
 
 
 @shared
-def _local(bounds, wishes, mu, rho, weight, motion, values, jacobian, matrix, vector):
+def _local(bounds, wishes, mu, rho, memory, i, weight, motion, values, jacobian, matrix, vector):
     """Matrix (3d, 3d, lower half) and gradient (3d,) of one sample in terms of its motion."""
     d = motion.shape[1]
     matrix[:] = 0.0
@@ -184,11 +194,12 @@ def _local(bounds, wishes, mu, rho, weight, motion, values, jacobian, matrix, ve
     for j in range(bounds.lower.shape[0]):
         v, scale = values[WRENCHES + j], bounds.scale[j]
         slope, curvature = 0.0, 0.0
+        price = rho * bounds.price[j]
         if bounds.upper[j] < np.inf:
-            _, z, c = penalty((v - bounds.upper[j]) / scale, mu, rho * bounds.price[j])
+            z, c = linearised((v - bounds.upper[j]) / scale, mu, price, memory, i, j, 0)
             slope, curvature = z / scale, c / scale**2
         if bounds.lower[j] > -np.inf:
-            _, z, c = penalty((bounds.lower[j] - v) / scale, mu, rho * bounds.price[j])
+            z, c = linearised((bounds.lower[j] - v) / scale, mu, price, memory, i, j, 2)
             slope, curvature = slope - z / scale, curvature + c / scale**2
         if curvature > 0.0:
             _add_square(jacobian[WRENCHES + j], weight * curvature, weight * slope, matrix, vector)
@@ -213,16 +224,16 @@ def _spread(grid, i, matrix, vector, half, band, gradient):
         for row in range(size):
             for j in range(d):
                 total = 0.0
-                for l in range(3):
-                    m = l * d + j
+                for e in range(3):
+                    m = e * d + j
                     x = matrix[row, m] if row >= m else matrix[m, row]
-                    total += x * grid.basis[i, l, a]
+                    total += x * grid.basis[i, e, a]
                 half[a, j, row] = total
         if block < 0:
             continue
         for j in range(d):
-            for l in range(3):
-                gradient[block * d + j] += grid.basis[i, l, a] * vector[l * d + j]
+            for e in range(3):
+                gradient[block * d + j] += grid.basis[i, e, a] * vector[e * d + j]
     for a in range(FUNCTIONS):
         column_block = grid.numbers[grid.first[i] + a]
         if column_block < 0:
@@ -235,15 +246,30 @@ def _spread(grid, i, matrix, vector, half, band, gradient):
                 column = column_block * d + j
                 for m in range(j if row_block == column_block else 0, d):
                     total = 0.0
-                    for l in range(3):
-                        total += grid.basis[i, l, b] * half[a, j, l * d + m]
+                    for e in range(3):
+                        total += grid.basis[i, e, b] * half[a, j, e * d + m]
                     band[column, row_block * d + m - column] += total
 
 
 @kernel
-def linearise(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients, band):
+def linearise(
+    model,
+    water,
+    grid,
+    target,
+    bounds,
+    rows,
+    wishes,
+    mu,
+    rho,
+    coefficients,
+    memory,
+    row_memory,
+    band,
+):
     """Gradient of F; fills `band` (unknowns, width) with its Gauss-Newton matrix.
 
+    memory (k, v, 4) and row_memory (r, 1, 4) hold what `barrier.linearised` remembers.
     Row c of the band holds the elements (c, c), (c + 1, c) ... of column c.
     """
     d = coefficients.shape[1]
@@ -263,17 +289,30 @@ def linearise(model, water, grid, target, bounds, rows, wishes, mu, rho, coeffic
         sample_jacobian(model, water, motion, target, i, needed, values, moved, jacobian)
         if thrust and not needed:
             jacobian[THRUST:] = 0.0
-        _local(bounds, wishes, mu, rho, grid.weights[i], motion, values, jacobian, matrix, vector)
+        _local(
+            bounds,
+            wishes,
+            mu,
+            rho,
+            memory,
+            i,
+            grid.weights[i],
+            motion,
+            values,
+            jacobian,
+            matrix,
+            vector,
+        )
         _spread(grid, i, matrix, vector, half, band, gradient)
     for r in range(rows.first.shape[0]):
-        _add_row(grid, rows, r, mu, rho, coefficients, band, gradient)
+        _add_row(grid, rows, r, mu, rho, row_memory, coefficients, band, gradient)
     return gradient
 
 
 @shared
-def _add_row(grid, rows, r, mu, rho, coefficients, band, gradient):
+def _add_row(grid, rows, r, mu, rho, memory, coefficients, band, gradient):
     d = coefficients.shape[1]
-    _, slope, curvature = _row_cost(rows, r, coefficients, mu, rho)
+    slope, curvature = _row_slope(rows, r, coefficients, mu, rho, memory)
     for j in range(3):
         column_block = grid.numbers[rows.first[r] + j]
         if rows.factors[r, j] == 0.0 or column_block < 0:

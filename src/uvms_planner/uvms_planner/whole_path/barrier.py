@@ -10,6 +10,8 @@ import numpy as np
 
 from uvms_dynamics.kernels.jit import inner
 
+TRUST = 100.0  # how far a multiplier may be from the barrier's own
+
 
 @inner
 def multiplier(g, mu, rho):
@@ -27,3 +29,26 @@ def penalty(g, mu, rho):
     s, t = mu / z, mu / y
     value = rho * t - mu * (1.0 + np.log(s) + np.log(t * rho / mu))
     return value, z, 1.0 / (s / z + t / y)
+
+
+@inner
+def linearised(g, mu, rho, memory, i, j, k):
+    """Slope and curvature of the penalty for a primal-dual Newton step.
+
+    memory[i, j] remembers in its columns k and k + 1 what a step changes the multiplier z into,
+    z = a + w g; a < 0 where there has been none. The system is that of z s = mu and
+    (rho - z) t = mu with the slacks at their best, so that lowering mu does not shorten the steps.
+    """
+    ideal, rest = multiplier(g, mu, rho), multiplier(-g, mu, rho)
+    if g > 0.0:
+        # The slope falls to almost nothing at g = 0, which the curvature here does not show.
+        z, y, w = ideal, rest, max(1.0 / (mu / ideal**2 + mu / rest**2), ideal / g)
+    else:
+        z = memory[i, j, k] + memory[i, j, k + 1] * g if memory[i, j, k] >= 0.0 else ideal
+        z = min(max(z, ideal / TRUST), ideal * TRUST)
+        y = min(max(rho - z, rest / TRUST), rest * TRUST)
+        z = rho - y
+        w = 1.0 / (mu / (ideal * z) + mu / (rest * y))
+    a = z + w * (mu / z - mu / y) if g <= 0.0 else z - w * g
+    memory[i, j, k], memory[i, j, k + 1] = max(a, 0.0), w
+    return a + w * g, w

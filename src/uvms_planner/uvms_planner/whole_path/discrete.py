@@ -1,28 +1,29 @@
 """The problem on knots: what the kernels of `assembly` take."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from uvms_core.signals import Array
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path import assembly
 from uvms_planner.whole_path.assembly import Bounds, Grid, Rows, Wishes
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, WRENCHES, Target, Water
+from uvms_planner.whole_path.sample import Target, Water
+from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.spline import (
     DEGREE,
     FIXED,
     basis_at,
     end_coefficients,
+    greville,
     knots_at,
     rate_factors,
 )
 
 TIGHT = 0.99  # of sampled limits: what a value may gain between two samples
-ATTITUDE_PRICE = 0.1
-"""A start may be beyond the free attitude's limits: no acceleration is exceeded to come back."""
-NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
 
 
 @dataclass(frozen=True)
@@ -50,6 +51,22 @@ class Discrete:
             self.wishes,
         )  # fmt: skip
 
+    def tightened(self, excess: Array) -> "Discrete":
+        """The same with the sampled limits less by the shares `excess` (v,) where positive."""
+        less = np.maximum(excess, 0.0) * self.bounds.scale
+        bounds = self.bounds._replace(
+            lower=self.bounds.lower + less, upper=self.bounds.upper - less
+        )
+        return replace(self, bounds=bounds)
+
+    def taken_from(self, knots: Array, coefficients: Array) -> Array:
+        """Coefficients (K, d) of the spline on these knots that is nearest to one on others."""
+        sites = np.clip(greville(self.knots), knots[0], knots[-1])
+        basis = basis_at(knots, sites)
+        near = coefficients[basis.first[:, None] + np.arange(DEGREE + 1)]
+        values = np.einsum("ka,kad->kd", basis.values[:, 0], near)
+        return self.complete(make_interp_spline(sites, values, k=DEGREE, t=self.knots).c)
+
     def disturbance(self, coefficients: Array) -> float:
         """J on the samples of the quadrature."""
         return assembly.disturbance(
@@ -75,9 +92,8 @@ def discretise(
     numbers = np.arange(count) - FIXED
     numbers[:FIXED], numbers[-FIXED:] = -1, count - 2 * FIXED
     grid = Grid(basis.first, basis.values, weights, numbers.astype(np.int64))
-    water = problem.water or NO_WATER
     return Discrete(
-        problem, knots, grid, problem.target(times), water, _bounds(problem, water, tight),
+        problem, knots, grid, problem.target(times), problem.water, sampled_bounds(problem, tight),
         _rows(problem, knots, numbers), _wishes(problem),
     )  # fmt: skip
 
@@ -89,24 +105,7 @@ def _quadrature(breaks: Array, points: int) -> tuple[Array, Array]:
     return (middle[:, None] + half[:, None] * x).ravel(), (half[:, None] * w).ravel()
 
 
-def _bounds(problem: PathProblem, water: Water, tight: float) -> Bounds:
-    limits, thrusters = problem.limits, len(water.shares)
-    size = THRUST - WRENCHES + thrusters
-    upper = np.full(size, np.inf)
-    at = POSITION - WRENCHES
-    upper[at + 3 : at + 6] = tight * limits.rate[:3]
-    upper[at + 6 : at + 9] = tight * limits.acceleration[:3]
-    roll = ATTITUDE - WRENCHES
-    upper[roll : roll + 2] = tight * limits.roll_max, tight * limits.pitch_max
-    upper[THRUST - WRENCHES :] = 1.0
-    lower, scale = -upper, np.where(np.isfinite(upper), upper, 1.0)
-    lower[at : at + 3], upper[at : at + 3] = limits.lower[:3], limits.upper[:3]
-    price = np.ones(size)
-    price[roll : roll + 2] = ATTITUDE_PRICE
-    return Bounds(lower, upper, scale, price)
-
-
-def _rows(problem: PathProblem, knots: Array, numbers: Array) -> Rows:
+def _rows(problem: PathProblem, knots: Array, numbers: Any) -> Rows:
     """Bounds, rates and accelerations of the posture by the convex hull of the coefficients."""
     first, second = rate_factors(knots, DEGREE), rate_factors(knots[1:-1], DEGREE - 1)
     zero = np.zeros_like(first)

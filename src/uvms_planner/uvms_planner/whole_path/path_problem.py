@@ -4,25 +4,31 @@ from dataclasses import dataclass, field
 from typing import Protocol
 
 import numpy as np
-from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
+from uvms_core.end_effector_path import PathSamples
 from uvms_core.signals import Array
 from uvms_dynamics import Model
-from uvms_planner.whole_path.sample import Target, Water
+from uvms_planner.limits import MotionLimits
+from uvms_planner.whole_path.sample import NO_WATER, Target, Water
 
-OVERLAP_S = 0.25  # between instants at which a path that is not C2 is read
 
+class Path(Protocol):
+    """What `EndEffectorPath` and `JoinedPath` have in common."""
 
-class Limits(Protocol):
-    """Limits of c = (x, y, z, psi, q) as `MotionLimits` has them, (m,) each, SI and rad."""
+    @property
+    def duration(self) -> float:
+        """Seconds from the first point to the last."""
+        ...
 
-    lower: Array
-    upper: Array
-    rate: Array
-    acceleration: Array
-    roll_max: float
-    pitch_max: float
+    @property
+    def oriented(self) -> bool:
+        """Whether the path prescribes the orientation, too."""
+        ...
+
+    def samples(self, times: Array) -> PathSamples:
+        """Targets at `times` (k,) s."""
+        ...
 
 
 @dataclass(frozen=True)
@@ -59,9 +65,9 @@ class PathProblem:
     tool: "ToolPath"
     duration: float  # s
     start: Posture
-    limits: Limits
+    limits: MotionLimits
     weights: CostWeights = field(default_factory=CostWeights)
-    water: Water | None = None
+    water: Water = NO_WATER
     turn_tolerance: float = np.deg2rad(0.5)  # rad, from a prescribed orientation
 
     @property
@@ -75,13 +81,16 @@ class PathProblem:
 
 
 class ToolPath:
-    """A path of the end effector, C2 in time, possibly followed `factor` times slower."""
+    """A path of the end effector, possibly followed `factor` times slower.
 
-    def __init__(self, path, factor: float = 1.0):
+    `path` is an EndEffectorPath or a JoinedPath: anything with `duration`, `oriented` and
+    `samples(times)`.
+    """
+
+    def __init__(self, path: Path, factor: float = 1.0):
         self.path = path
         self.factor = factor
         self.oriented = bool(path.oriented)
-        self._smooth = None if hasattr(path, "samples") else _Smoothed(path)
 
     @property
     def duration(self) -> float:
@@ -95,8 +104,7 @@ class ToolPath:
     def target(self, times: Array) -> Target:
         """Position, velocity, acceleration and rotation at `times` (k,) s."""
         k = self.factor
-        source = self._smooth or self.path
-        s = source.samples(np.asarray(times, dtype=float) / k)
+        s = self.path.samples(np.asarray(times, dtype=float) / k)
         rotation = np.zeros((0, 3, 3))
         if s.quaternion is not None:
             rotation = Rotation.from_quat(s.quaternion).as_matrix()
@@ -106,29 +114,3 @@ class ToolPath:
             np.ascontiguousarray(s.acceleration / k**2),
             np.ascontiguousarray(rotation),
         )
-
-
-@dataclass(frozen=True)
-class _Read:
-    position: Array
-    velocity: Array
-    acceleration: Array
-    quaternion: Array | None
-
-
-class _Smoothed:
-    """A cubic spline through instants of a path that gives only positions and velocities."""
-
-    def __init__(self, path):
-        count = max(4, round(path.duration / OVERLAP_S))
-        times = np.linspace(0.0, path.duration, count + 1)
-        rest = (1, np.zeros(3))
-        points = np.array([path.sample(t).position for t in times])
-        self._path, self._oriented = path, bool(path.oriented)
-        self._spline = CubicSpline(times, points, bc_type=(rest, rest))
-
-    def samples(self, times: Array) -> _Read:
-        turns = None
-        if self._oriented:
-            turns = np.array([self._path.sample(t).quaternion for t in times])
-        return _Read(self._spline(times), self._spline(times, 1), self._spline(times, 2), turns)

@@ -8,12 +8,13 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import kernel
 from uvms_planner.segment import Samples
-from uvms_planner.whole_path.discrete import NO_WATER
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan_report import PlanReport, report_of
 from uvms_planner.whole_path.sample import THRUST, sample_values, vehicle_motion
 from uvms_planner.whole_path.spline import DEGREE, basis_at
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
+
+INSTANTS = 12  # of each piece at which a plan is examined
 
 
 @dataclass(frozen=True)
@@ -52,20 +53,24 @@ class PathPlan:
 
     def values(self, times: Array) -> Array:
         """Wrenches, motion, attitude, turn and thrust at `times` (k,) s, as in `sample`."""
-        water = self.problem.water or NO_WATER
         return plan_values(
-            self.problem.model, water, self.posture(times), self.problem.target(times)
+            self.problem.model, self.problem.water, self.posture(times), self.problem.target(times)
         )
 
     @cached_property
     def report(self) -> PlanReport:
         """What the plan costs, and how near it comes to each limit and where."""
-        count = max(2, int(np.ceil(self.duration / REPORT_S)))
-        times = np.linspace(0.0, self.duration, count + 1)
+        return self.report_at(self.instants())
+
+    def instants(self, each: int = INSTANTS) -> Array:
+        """That many instants on each of the spline's pieces, and the last."""
+        breaks = np.unique(self.knots)
+        inner = breaks[:-1, None] + np.diff(breaks)[:, None] * (np.arange(each) / each)
+        return np.append(inner.ravel(), breaks[-1])
+
+    def report_at(self, times: Array) -> PlanReport:
+        """The report of the instants `times` (k,) s, increasing."""
         return report_of(self.problem, times, self.posture(times), self.values(times))
-
-
-REPORT_S = 0.01  # between the instants at which a plan is examined
 
 
 @kernel

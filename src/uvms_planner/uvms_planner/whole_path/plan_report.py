@@ -7,10 +7,10 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, TURN, WRENCHES
+from uvms_planner.whole_path.sample import ATTITUDE, THRUST, TURN, WRENCHES
+from uvms_planner.whole_path.sampled_bounds import sampled_bounds, value_names
 
-FORGIVEN = 1e-3  # share by which a limit may be exceeded
-AXES = ("x", "y", "z")
+FORGIVEN = 1e-3  # share by which a limit may be exceeded; mm and mrad of a position
 
 
 @dataclass(frozen=True)
@@ -18,10 +18,13 @@ class LimitShare:
     """Where a plan comes nearest to one limit."""
 
     name: str  # such as "rate of joint 2"
-    share: float  # 1 at the limit
+    share: float  # 1 at the limit; of a position's bound 1 + what it is exceeded by, m or rad
     time: float  # s after the beginning
     value: float  # SI and rad
     limit: float
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.value:.4g} at t = {self.time:.4g} s, allowed {self.limit:.4g}"
 
 
 @dataclass(frozen=True)
@@ -32,6 +35,7 @@ class PlanReport:
     force_rms: float  # N, of their sum
     moment_rms: float  # N m
     limits: tuple[LimitShare, ...]  # the worst first
+    excess: Array  # (v,) shares by which the sampled values exceed their limits, or negative
 
     @property
     def worst(self) -> LimitShare:
@@ -45,68 +49,77 @@ class PlanReport:
 
 
 def report_of(problem: PathProblem, times: Array, posture: Array, values: Array) -> PlanReport:
-    """The report of posture (k, 3, d) and values (k, v) of `sample` at even `times` (k,)."""
+    """The report of posture (k, 3, d) and values (k, v) of `sample` at `times` (k,) s."""
     wrenches = values[:, :WRENCHES]
     total = wrenches[:, :6] + wrenches[:, 6:]
-    squares = np.sum(wrenches**2, axis=1)
-    shares = sorted(_shares(problem, times, posture, values), key=lambda s: -s.share)
+    sampled = list(_of_samples(problem, values, times))
+    limits = [*(worst for worst, _ in sampled if worst), *_of_posture(problem, posture, times)]
     return PlanReport(
-        float(np.trapezoid(squares, times)),
-        _rms(total[:, :3]),
-        _rms(total[:, 3:]),
-        tuple(shares),
+        float(np.trapezoid(np.sum(wrenches**2, axis=1), times)),
+        _rms(total[:, :3], times),
+        _rms(total[:, 3:], times),
+        tuple(sorted(limits, key=lambda limit: -limit.share)),
+        np.array([excess for _, excess in sampled]),
     )
 
 
-def _rms(vectors: Array) -> float:
-    return float(np.sqrt(np.mean(np.sum(vectors**2, axis=1))))
+def _rms(vectors: Array, times: Array) -> float:
+    mean = np.trapezoid(np.sum(vectors**2, axis=1), times) / (times[-1] - times[0])
+    return float(np.sqrt(mean))
 
 
-def _shares(problem: PathProblem, times: Array, posture: Array, values: Array):
-    limits, n = problem.limits, problem.size - 1
-    names = [f"{axis} of the vehicle" for axis in AXES] + ["the yaw"]
-    names += [f"joint {i + 1}" for i in range(n)]
-    vehicle = values[:, POSITION : POSITION + 9].reshape(-1, 3, 3)
-    motion = np.concatenate([vehicle, posture], axis=2)
-    for k, name in enumerate(names):
-        yield _largest(f"rate of {name}", motion[:, 1, k], limits.rate[k], times)
-        yield _largest(f"acceleration of {name}", motion[:, 2, k], limits.acceleration[k], times)
-        yield from _bound(problem, name, k, motion[:, 0, k], times)
-    yield _attitude(problem, "roll", values[:, ATTITUDE], limits.roll_max, times)
-    yield _attitude(problem, "pitch", values[:, ATTITUDE + 1], limits.pitch_max, times)
-    if problem.tool.oriented:
-        turn = np.linalg.norm(values[:, TURN : TURN + 3], axis=1)
-        yield _largest("the tool's orientation", turn, problem.turn_tolerance, times)
-    for k in range(THRUST, values.shape[1]):
-        yield _largest(f"thruster {k - THRUST + 1}", values[:, k], 1.0, times)
+def _of_samples(problem: PathProblem, values: Array, times: Array):
+    """Of each sampled value what it comes to of its limit, and by how much it exceeds it."""
+    bounds, names = sampled_bounds(problem), value_names(problem)
+    turn = TURN - WRENCHES
+    for j, name in enumerate(names):
+        here, when, scale = values[:, WRENCHES + j], times, bounds.scale[j]
+        if ATTITUDE <= WRENCHES + j < TURN:
+            here, when = _since_level(here, times, bounds.upper[j])
+        if j == turn and problem.tool.oriented:
+            angle = np.linalg.norm(values[:, TURN:THRUST], axis=1)
+            yield _nearest(name, angle, when, -np.inf, problem.turn_tolerance, None), -np.inf
+            continue
+        limit = _nearest(name, here, when, bounds.lower[j], bounds.upper[j], scale)
+        yield limit, -np.inf if limit is None else limit.share - 1
 
 
-def _largest(name: str, values: Array, limit: float, times: Array) -> LimitShare:
-    k = int(np.argmax(np.abs(values)))
-    return LimitShare(
-        name, float(abs(values[k]) / limit), float(times[k]), float(values[k]), float(limit)
-    )
-
-
-def _attitude(problem, name, values: Array, limit: float, times: Array) -> LimitShare:
+def _since_level(values: Array, times: Array, limit: float) -> tuple[Array, Array]:
     """Where the start is beyond the limit, what comes after the first return counts."""
     inside = np.flatnonzero(np.abs(values) <= limit)
     first = inside[0] if len(inside) else 0
-    return _largest(f"free {name}", values[first:], limit, times[first:])
+    return values[first:], times[first:]
 
 
-def _bound(problem: PathProblem, name: str, k: int, values: Array, times: Array):
-    """Bounds of a variable as shares of their range; the start may be beyond them."""
-    lower, upper = problem.limits.lower[k], problem.limits.upper[k]
-    if k >= VEHICLE - 1:
-        start = problem.start.value[k - VEHICLE + 1]
-        lower, upper = min(lower, start), max(upper, start)
-    half = (upper - lower) / 2 if np.isfinite(upper - lower) else 1.0
-    if np.isfinite(upper):
-        i = int(np.argmax(values))
-        share = 1 + (values[i] - upper) / half
-        yield LimitShare(f"greatest {name}", float(share), float(times[i]), values[i], upper)
-    if np.isfinite(lower):
-        i = int(np.argmin(values))
-        share = 1 + (lower - values[i]) / half
-        yield LimitShare(f"least {name}", float(share), float(times[i]), values[i], lower)
+def _of_posture(problem: PathProblem, posture: Array, times: Array):
+    """Yaw and joints, their rates and accelerations."""
+    limits = problem.limits
+    names = ["yaw", *(f"joint {i + 1}" for i in range(problem.size - 1))]
+    for k, name in enumerate(names):
+        c, start = VEHICLE - 1 + k, problem.start.value[k]
+        low, high = min(limits.lower[c], start), max(limits.upper[c], start)
+        for what, row, lower, upper, scale in (
+            ("", 0, low, high, 1.0),
+            ("rate of ", 1, -limits.rate[c], limits.rate[c], limits.rate[c]),
+            ("acceleration of ", 2, -limits.acceleration[c], limits.acceleration[c], None),
+        ):
+            found = _nearest(what + name, posture[:, row, k], times, lower, upper, scale)
+            if found is not None:
+                yield found
+
+
+def _nearest(
+    name: str, values: Array, times: Array, lower: float, upper: float, scale: float | None
+) -> LimitShare | None:
+    """Where values (k,) are nearest to a bound, or farthest beyond it; None without bounds."""
+    scale = upper if scale is None else scale
+    over, under = int(np.argmax(values)), int(np.argmin(values))
+    found = [
+        LimitShare(name, float(1 + gap / scale), float(times[i]), float(values[i]), float(bound))
+        for i, bound, gap in (
+            (over, upper, values[over] - upper),
+            (under, lower, lower - values[under]),
+        )
+        if np.isfinite(bound)
+    ]
+    return max(found, key=lambda limit: limit.share) if found else None

@@ -40,6 +40,10 @@ class Water(NamedTuple):
     current: Array  # (3,) m/s, map_ned
 
 
+NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
+"""No thruster limits a plan."""
+
+
 @shared
 def vehicle_motion(model, motion, target, i, frames, tool, out):
     """Fill `out` (3, 3): position, velocity and acceleration of the vehicle, world axes."""

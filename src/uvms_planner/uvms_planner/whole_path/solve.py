@@ -5,27 +5,21 @@ from collections.abc import Callable
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_planner.whole_path.discrete import discretise
+from uvms_planner.whole_path.discrete import Discrete, discretise
 from uvms_planner.whole_path.newton import Schedule, solve_on_knots
 from uvms_planner.whole_path.path_problem import PathProblem
+from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
 from uvms_planner.whole_path.plan import PathPlan
 
-FIRST_S = 0.1  # the first piece: a posture that is left quickly needs fine pieces
-GROWTH = 1.15  # from one piece to the next
-PIECES = 240  # of a path of medium length
-FINEST_S, COARSEST_S = 0.5, 3.0  # of the pieces after the beginning
+ROUGH = Schedule(barriers=(1e-1, 1e-2, 1e-3, 1e-4))
+FULL = Schedule(barriers=(1e-3, 1e-4, 1e-5))
+REPAIR = Schedule(barriers=(1e-4, 1e-5))
+REPAIRS = 3  # times at most that limits are tightened where a plan exceeds them between samples
+SPARE = 2e-3  # share of a limit by which it is tightened more than it was exceeded
+HIGHER = 10.0  # price of a limit from one repair to the next
+HOPELESS = 0.1  # excess that no tightening mends
 
 Progress = Callable[[float, str], None]
-
-
-def graded_breaks(duration: float) -> Array:
-    """Ends of the pieces (b,): fine at the beginning, even later; as many as the path is long."""
-    spacing = float(np.clip(duration / PIECES, FINEST_S, COARSEST_S))
-    lengths = [min(FIRST_S, duration / 8)]
-    while sum(lengths) < duration:
-        lengths.append(min(lengths[-1] * GROWTH, spacing))
-    breaks = np.concatenate([[0.0], np.cumsum(lengths)])
-    return breaks * duration / breaks[-1]
 
 
 def solve(
@@ -35,15 +29,39 @@ def solve(
 
     Where the limits cannot be kept, the plan breaks them least; its report says which and where.
     """
-    discrete = discretise(problem, graded_breaks(problem.duration))
-    schedule = Schedule()
-    done = [0]
-
-    def tick():
-        done[0] += 1
-        progress(min(done[0] / 40, 0.99), "whole path")
-
-    held = np.tile(problem.start.value, (len(discrete.grid.numbers), 1))
-    solution = solve_on_knots(discrete, held, schedule, tick)
+    breaks = coarse_breaks(problem)
+    coarse, fine = discretise(problem, breaks), discretise(problem, fine_breaks(breaks))
+    progress(0.0, "searching")
+    held = np.tile(problem.start.value, (len(coarse.grid.numbers), 1))
+    rough = solve_on_knots(coarse, held, ROUGH)
+    progress(0.4, "whole path")
+    begin = fine.taken_from(coarse.knots, rough.coefficients)
+    plan = _polished(fine, begin, lambda share: progress(0.4 + 0.6 * share, "whole path"))
     progress(1.0, "whole path")
-    return PathPlan(problem, discrete.knots, solution.coefficients, solution.iterations)
+    return plan
+
+
+def _polished(discrete: Discrete, begin: Array, progress: Callable[[float], None]) -> PathPlan:
+    """The optimum near `begin` that keeps the limits between the samples as well."""
+    solution = solve_on_knots(discrete, begin, FULL, ticker(progress, FULL))
+    count, price = solution.iterations, FULL.price
+    for _ in range(REPAIRS):
+        plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
+        excess = plan.report.excess
+        if plan.report.feasible or excess.max() > HOPELESS:
+            return plan
+        discrete, price = discrete.tightened(excess + SPARE), HIGHER * price
+        solution = solve_on_knots(discrete, solution.coefficients, REPAIR.at_price(price))
+        count += solution.iterations
+    return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
+
+
+def ticker(progress: Callable[[float], None], schedule: Schedule) -> Callable[[], None]:
+    """Reports after each step how much of the schedule is done at least."""
+    done, most = [0], schedule.most_steps
+
+    def tick() -> None:
+        done[0] += 1
+        progress(done[0] / most)
+
+    return tick

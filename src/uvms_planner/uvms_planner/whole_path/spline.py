@@ -5,7 +5,7 @@ degree 2, continuous with its rate, and as low a degree as possible keeps the bo
 hull of the coefficients tight.
 """
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
@@ -41,7 +41,7 @@ def basis_at(knots: Array, times: Array) -> Basis:
     return Basis((spans - DEGREE).astype(np.int64), np.ascontiguousarray(values))
 
 
-def _cox_de_boor(knots: Array, times: Array, spans: Array, degree: int) -> Array:
+def _cox_de_boor(knots: Array, times: Array, spans: Any, degree: int) -> Array:
     """The degree + 1 functions of a lower degree that are not zero, (k, degree + 1)."""
     values = np.ones((len(times), 1))
     for p in range(1, degree + 1):
@@ -49,7 +49,7 @@ def _cox_de_boor(knots: Array, times: Array, spans: Array, degree: int) -> Array
     return values
 
 
-def _raised(knots: Array, times: Array, spans: Array, lower: Array, degree: int) -> Array:
+def _raised(knots: Array, times: Array, spans: Any, lower: Array, degree: int) -> Array:
     """Functions of `degree` from those of one degree less."""
     out = np.zeros((len(times), degree + 1))
     for j in range(degree):
@@ -60,7 +60,7 @@ def _raised(knots: Array, times: Array, spans: Array, lower: Array, degree: int)
     return out
 
 
-def _differentiated(knots: Array, spans: Array, lower: Array, degree: int) -> Array:
+def _differentiated(knots: Array, spans: Any, lower: Array, degree: int) -> Array:
     """Derivatives of the functions of `degree` from those of one degree less (or theirs)."""
     out = np.zeros((len(spans), degree + 1))
     for j in range(degree):
