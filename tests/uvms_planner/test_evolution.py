@@ -20,7 +20,7 @@ from uvms_planner.projection import tool_pose
 from uvms_planner.refine import refine
 
 SOLVER = solver_of()
-SETTINGS = evolution_settings(SOLVER._config.genetic)
+SETTINGS = evolution_settings(SOLVER.config.genetic)
 STILL = np.zeros(8)
 
 
