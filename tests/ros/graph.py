@@ -1,10 +1,13 @@
 """Runs of the real graph for the tests: own process, own ROS domain, loopback only."""
 
+import fcntl
 import itertools
 import json
 import os
 import subprocess
 import sys
+import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,7 +18,24 @@ import pytest
 from uvms_analysis.log.read import RunLog
 from uvms_core.topics import Topic
 
-_DOMAINS = itertools.count(10 + os.getpid() % 40)
+
+def _domains() -> Iterator[int]:
+    """Domains 1 to 100 that no other session of tests has, then those of this one again."""
+    mine = []  # the open files hold the locks to the end of the session
+    for k in range(100):
+        domain = (os.getpid() + k) % 100 + 1
+        lock = open(Path(tempfile.gettempdir()) / f"uvms_tests_domain_{domain}", "w")
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            lock.close()
+            continue
+        mine.append((domain, lock))
+        yield domain
+    yield from itertools.cycle([domain for domain, _ in mine])
+
+
+_DOMAINS = _domains()
 
 
 @dataclass(frozen=True)
@@ -40,7 +60,7 @@ def own_domain() -> dict[str, str]:
     """Environment with a ROS domain that no other run of this session uses."""
     return dict(
         os.environ,
-        ROS_DOMAIN_ID=str(next(_DOMAINS) % 100 + 1),
+        ROS_DOMAIN_ID=str(next(_DOMAINS)),
         ROS_AUTOMATIC_DISCOVERY_RANGE="LOCALHOST",
     )
 
