@@ -62,7 +62,10 @@ def test_a_node_that_gets_rubbish_reports_it_and_goes_on():
         heard = (topics.DIAGNOSTICS, topics.THRUSTER_COMMAND)
         return Peer(heard, (topics.WRENCH_COMMAND,))
 
-    with graph_of(ThrustAllocatorNode, peer) as (spinner, (node, other)):
+    def allocator() -> ThrustAllocatorNode:  # thrust as it is asked for, lag and all
+        return ThrustAllocatorNode(parameter_overrides=parameters(lag_compensation=0.0))
+
+    with graph_of(allocator, peer) as (spinner, (node, other)):
         spin_until(spinner, lambda: node.count_publishers("wrench_command") == 1)
         spin_until(spinner, lambda: other.count_publishers("thruster_command") == 1)
         spin_until(spinner, lambda: node.missing_peers() == [nobody_reads(topics.WRENCH_ACHIEVED)])
