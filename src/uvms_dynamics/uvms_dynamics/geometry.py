@@ -66,7 +66,7 @@ def build_geometry(vehicle: Vehicle, obstacles: Sequence[Obstacle] = ()) -> Geom
 def clearances(geometry: Geometry, configuration: Array) -> Array:
     """Signed distance of each pair (k,), m, in the configuration c (m,) of a level vehicle.
 
-    c = (x, y, z, psi, q): position in map_ned, m, yaw and joint angles, rad. Negative: they overlap.
+    c = (x, y, z, psi, q): position in map_ned, m, yaw and joint angles, rad. Below 0 they overlap.
     """
     return kernels.clearances_of(geometry.model, geometry.shapes, configuration)
 
@@ -91,7 +91,9 @@ def _row() -> Array:
 
 def _capsule_row(capsule: CapsuleOutline, body: int = 0) -> Array:
     row = _row()
-    row[kernels.KIND], row[kernels.BODY] = kernels.CAPSULE, body
+    is_ball = bool((capsule.start == capsule.end).all())
+    row[kernels.KIND] = kernels.BALL if is_ball else kernels.CAPSULE
+    row[kernels.BODY] = body
     row[kernels.START : kernels.START + 3] = capsule.start
     row[kernels.DIRECTION : kernels.DIRECTION + 3] = capsule.end - capsule.start
     row[kernels.RADIUS] = capsule.radius
@@ -161,11 +163,9 @@ def _table(
     """All rows; `bodies` are the pairs."""
     head = _row()
     head[: kernels.PAIRS + 1] = len(hull), len(capsules), len(scene), len(bodies)
-    pairs = []
-    for pair in bodies:
-        row = _row()
+    pairs = [_row() for _ in bodies]
+    for row, pair in zip(pairs, bodies, strict=True):
         row[[kernels.FIRST_BODY, kernels.SECOND_BODY]] = pair
-        pairs.append(row)
     return np.ascontiguousarray(np.vstack([head, *hull, *capsules, *scene, *pairs]))
 
 

@@ -9,6 +9,7 @@
 
 import math
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -111,9 +112,9 @@ def _around(cylinder: DragCylinder) -> CapsuleOutline:
 def _along(line: Array, link: Link) -> list[CapsuleOutline]:
     """Capsules along a line (3, 3) with the radius that gives them the link's volume.
 
-    pi r^2 l + 4/3 pi r^3 = V, by Newton's method from the sphere of the volume, which is too large.
+    pi r^2 l + 4/3 pi r^3 = V, by Newton's method from the sphere of the volume, too large.
     """
-    pieces = [(a, b) for a, b in zip(line, line[1:], strict=False) if (a != b).any()]
+    pieces = [(a, b) for a, b in pairwise(line) if (a != b).any()]
     length = float(sum(np.linalg.norm(b - a) for a, b in pieces))
     radius = math.cbrt(0.75 * link.volume_m3 / math.pi)
     for _ in range(50):  # convex and increasing: it converges from above

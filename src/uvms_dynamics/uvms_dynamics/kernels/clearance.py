@@ -3,7 +3,7 @@
 The shapes are one table, whose rows are
 
 - row 0: how many rows of each kind follow, one kind after the other,
-- parts of the hull (spheroid, box or capsule) in the body frame,
+- parts of the hull (spheroid, box, capsule or ball) in the body frame,
 - capsules of the links, by link, each in the frame of its joint as the model has it,
 - obstacles (ball, box, plane) in map_ned,
 - pairs of bodies, 0 for the hull and i for link i, one of which is a link.
@@ -192,6 +192,8 @@ def _from_part(shapes, i, p, d):
         start, direction = _in_box(shapes, i, p), _in_axes(shapes, i, d)
         return segment_box(start, direction, load3(shapes, i, HALF))
     q, e = load3(shapes, i, START), load3(shapes, i, DIRECTION)
+    if kind == BALL:
+        return point_segment(q, p, d) - shapes[i, RADIUS]
     return segment_segment(p, d, q, e) - shapes[i, RADIUS]
 
 
@@ -278,7 +280,7 @@ def _part_from_obstacle(shapes, i, obstacle, position, rotation):
     if kind == SPHEROID:
         return _spheroid_from_obstacle(shapes, i, obstacle, position, rotation)
     p = _point_in_world(position, rotation, load3(shapes, i, START))
-    if kind == CAPSULE:
+    if kind != BOX:
         d = _in_world(rotation, load3(shapes, i, DIRECTION))
         return _segment_from_obstacle(shapes, obstacle, p, d) - shapes[i, RADIUS]
     return _box_from_obstacle(shapes, i, obstacle, p, rotation)

@@ -1,4 +1,4 @@
-"""Signed distances between segments, boxes, spheroids and points, in closed form where there is one.
+"""Signed distances between points, segments, boxes and spheroids, in closed form where possible.
 
 A shape with a radius is its segment or point less the radius. Outside each other all distances are
 exact. Inside a box or spheroid the distance of the deepest point of a segment counts, negative:
@@ -13,8 +13,9 @@ import math
 from uvms_dynamics.kernels.jit import inner, shared
 
 _TINY = 1e-300  # keeps a division from failing; what is multiplied by it is zero as well
-_CONVERGED = 1e-9  # of a spheroid's length; the value is off by the square of it
-_ITERATIONS = 40  # of which bisection alone needs 31
+_CONVERGED = 1e-15  # of a spheroid's length: twice what Newton's step still wins
+_NARROW = 1e-9  # of it: the range in which a distance is least; its value is off by the square
+_ITERATIONS = 40  # bisection alone needs 31
 _NEWTON = 6  # steps by Newton's method alone, before every other one halves the range
 
 
@@ -152,44 +153,50 @@ def _from_faces(x, h):
 # convex function, whose derivative is <= 0 at one end and >= 0 at the other.
 
 
-@inner
-def _ball_radius(c, b, focus2):
-    """Radius of the ball about (c, 0, 0) in a spheroid; focus2: (a e)^2 = a^2 - b^2."""
-    return b * math.sqrt(max(1.0 - c * c / focus2, 0.0))
-
-
 @shared
 def spheroid_segment(a, b, p, d):
-    """Signed distance of the segment from p to p + d from a spheroid with half axes a > b."""
+    """Signed distance of the segment from p to p + d from a spheroid with half axes a > b.
+
+    By Newton's method, with the curvature of the distance from the nearest point of the segment.
+    """
     focus2 = a * a - b * b
-    squared = dot(d, d) + _TINY
-    limit = focus2 / a
-    low, high = -limit, limit
-    c = min(max(p[0] + 0.5 * d[0], low), high)
+    inverse = 1.0 / (dot(d, d) + _TINY)
+    low, high = -focus2 / a, focus2 / a
+    c = _first_ball(a, b, p, d)
     gap = 0.0
     for k in range(_ITERATIONS):
         r = (c - p[0], -p[1], -p[2])
-        t = _unit_range(dot(r, d) / squared)
+        t = _unit_range(dot(r, d) * inverse)
         u = along(r, d, -t)
         distance = math.sqrt(dot(u, u)) + _TINY
-        radius = _ball_radius(c, b, focus2)
-        gap = distance - radius
-        slope = u[0] / distance + b * b * c / (focus2 * radius)
-        # Newton's step, with the curvature of the distance from the nearest point
-        curve = b * b * b * b / (focus2 * radius * radius * radius)
-        across = d[0] * d[0] / squared if 0.0 < t < 1.0 else 0.0
-        curve += max(1.0 - across - (u[0] / distance) ** 2, 0.0) / distance
+        cosine = u[0] / distance
+        root = math.sqrt(1.0 - c * c / focus2)
+        slope = cosine + b * c / (focus2 * root)
+        straight = d[0] * d[0] * inverse if 0.0 < t < 1.0 else 0.0
+        curve = max(1.0 - straight - cosine * cosine, 0.0) / distance
+        curve += b / (focus2 * root * root * root)
+        step = slope / curve
+        gap = distance - b * root - 0.5 * slope * step
         if slope < 0.0:
             low = c
         else:
             high = c
-        step = slope / curve
-        if abs(step) < _CONVERGED * a or high - low < _CONVERGED * a:
+        if slope * step < _CONVERGED * a or high - low < _NARROW * a:
             break
         c -= step
         if not low < c < high or (k > _NEWTON and k % 2):
             c = 0.5 * (low + high)
     return gap
+
+
+@inner
+def _first_ball(a, b, p, d):
+    """Where the search begins: what is nearest for the point of the segment next to the axis."""
+    t = _unit_range(-(p[1] * d[1] + p[2] * d[2]) / (d[1] * d[1] + d[2] * d[2] + _TINY))
+    x, y, z = along(p, d, t)
+    focus2 = a * a - b * b
+    c = x * focus2 / (a * a + a * max(math.sqrt(y * y + z * z) - b, 0.0))
+    return min(max(c, -focus2 / a), focus2 / a)
 
 
 @shared
@@ -202,9 +209,9 @@ def spheroid_box(a, b, p, d, h):
         c = 0.5 * (low + high)
         x = along(p, d, c)
         distance = point_box(x, h)
-        radius = _ball_radius(c, b, focus2)
-        least = min(least, distance - radius)
-        slope = _box_distance_slope(x, d, h, distance) + b * b * c / (focus2 * radius)
+        root = math.sqrt(1.0 - c * c / focus2)
+        least = min(least, distance - b * root)
+        slope = _box_distance_slope(x, d, h, distance) + b * c / (focus2 * root)
         if slope < 0.0:
             low = c
         else:
