@@ -16,6 +16,7 @@ from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
 from uvms_core.errors import UvmsError
 from uvms_core.plugin import PluginConfig
+from uvms_core.scene import Obstacles
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
 from uvms_core.vehicle.postures import STOWED
@@ -58,6 +59,11 @@ class Scenario(Config):
     duration_s: float = Field(gt=0.0, le=LONGEST_RUN_S, description="simulated time of the run, s")
     plant: PlantConfig = Field(
         PlantConfig(), description="the simulated vehicle: integration, start and current"
+    )
+    obstacles: Obstacles = Field(
+        (),
+        description="what stands in the water at rest, map_ned; the planner knows of it, and the"
+        " seabed is the vehicle file's `environment.seabed_depth_m`",
     )
     navigation: NavigationConfig = Field(
         NavigationConfig(),
