@@ -133,6 +133,15 @@ class Scenario(Config):
             return own
         return own.model_copy(update={"gains": own.gains.model_copy(update=changed)})
 
+    @field_validator("planner")
+    @classmethod
+    def _knows_the_obstacles(cls, own: PlannerConfig, info: ValidationInfo) -> PlannerConfig:
+        """The planner knows what stands there, unless the scenario tries what it does not know."""
+        obstacles = info.data.get("obstacles")
+        if obstacles is None or "obstacles" in own.model_fields_set:
+            return own
+        return own.model_copy(update={"obstacles": obstacles})
+
     @field_validator("navigation")
     @classmethod
     def _starts_at_the_plant(cls, own: NavigationConfig, info: ValidationInfo) -> NavigationConfig:
@@ -150,7 +159,7 @@ class Scenario(Config):
             ScenarioError: there is no such vehicle, or the run cannot start with it.
         """
         vehicle = load_vehicle(vehicle_path(self.vehicle), self.vehicle_overrides)
-        check_start(vehicle, self.plant, self.planner, self.seed, self.events)
+        check_start(vehicle, self.plant, self.planner, self.seed, self.events, self.obstacles)
         return vehicle
 
     def for_vehicle(self, vehicle: Vehicle) -> "Scenario":

@@ -23,6 +23,10 @@ from uvms_dynamics.model import Model, build_model
 from uvms_dynamics.model.vehicle_table import body_poses
 
 HULL_NAME = "hull"
+OWN = ("hull", "arm")
+"""Kinds of pairs that the posture alone decides on: a link from the hull, or from another link."""
+AROUND = ("obstacle", "seabed")
+"""Kinds of pairs with what stands around the vehicle."""
 
 
 class Pair(NamedTuple):
