@@ -20,16 +20,25 @@ class _Scene(Config):
     obstacles: Obstacles = ()
 
 
+def run_obstacles(log: RunLog) -> Obstacles:
+    """The obstacles of a run.
+
+    Raises:
+        LogError: the log lacks its configuration, or it is damaged.
+    """
+    given = {"obstacles": log.configuration().get("obstacles", ())}
+    return validated(_Scene, given, f"log {log.path}: config.yaml", LogError).obstacles
+
+
 def run_geometry(log: RunLog) -> Geometry:
     """Shapes of a run's vehicle, seabed and obstacles.
 
     Raises:
         LogError: the log lacks its vehicle or its configuration, or they are damaged.
     """
-    given = {"obstacles": log.configuration().get("obstacles", ())}
+    obstacles = run_obstacles(log)
     try:
-        scene = validated(_Scene, given, "config.yaml")
-        return build_geometry(log.vehicle, scene.obstacles)
+        return build_geometry(log.vehicle, obstacles)
     except UvmsError as fault:
         raise LogError(f"log {log.path}: its clearances: {fault}") from fault
 
