@@ -2,9 +2,9 @@
 
 matplotlib's 3-D axes sort whole patches by depth and shade them flat, so that an arm in front of a
 hull comes out wrong. Here every pixel has its own ray, met with the sphere x^2 + y^2 + z^2 = 1, the
-cylinder x^2 + y^2 = 1 or the cone x^2 + y^2 = (1 - z)^2 / 4, the latter two for |z| <= 1, or the box
-|x|, |y|, |z| <= 1, in the shape's own coordinates. An affine map makes spheroids, links and arrows
-of them.
+box |x|, |y|, |z| <= 1, the cylinder x^2 + y^2 = 1 or the cone x^2 + y^2 = (1 - z)^2 / 4, the latter
+two for |z| <= 1, in the shape's own coordinates. An affine map makes spheroids, links and arrows of
+them.
 """
 
 from collections.abc import Callable, Sequence
