@@ -393,3 +393,17 @@ def test_wrong_sizes_are_refused(around):
     _, geometry = around
     with pytest.raises(ValueError, match="one angle for each joint"):
         clearances(geometry, np.zeros(7))
+    poses = np.zeros((2, 3)), np.zeros((1, 4)), np.zeros((2, 4))
+    with pytest.raises(ValueError, match="as many positions as quaternions"):
+        clearances_of_poses(geometry, *poses)
+
+
+def test_a_copy_ten_times_as_heavy_has_all_its_clearances_times_the_cube_root():
+    small, large = (
+        build_geometry(load_vehicle(vehicle_path(name)))
+        for name in ("reference_auv", "reference_auv_heavy")
+    )
+    rows = np.zeros((20, 8))
+    rows[:, 4:] = np.random.default_rng(0).uniform(*joint_limits(load_vehicle()), (20, 4))
+    expected = np.cbrt(10.0) * clearances_along(small, rows)
+    assert clearances_along(large, rows) == pytest.approx(expected, rel=1e-9)

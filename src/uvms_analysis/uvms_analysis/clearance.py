@@ -56,9 +56,7 @@ def planned_clearances(run: Analysis, geometry: Geometry) -> Array | None:
 
 def _of(poses: Series, angles: Array, geometry: Geometry) -> Array:
     try:
-        return clearances_of_poses(
-            geometry, *map(np.ascontiguousarray, (poses.position, poses.quaternion, angles))
-        )
+        return clearances_of_poses(geometry, poses.position, poses.quaternion, angles)
     except ValueError as fault:
         raise LogError(f"{poses.name}: its clearances: {fault}") from fault
 

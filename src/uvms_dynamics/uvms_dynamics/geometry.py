@@ -72,21 +72,25 @@ def clearances(geometry: Geometry, configuration: Array) -> Array:
 
     c = (x, y, z, psi, q): position in map_ned, m, yaw and joint angles, rad. Below 0 they overlap.
     """
-    return kernels.clearances_of(geometry.model, geometry.shapes, configuration)
+    return kernels.clearances_of(geometry.model, geometry.shapes, _plain(configuration))
 
 
 def clearances_along(geometry: Geometry, configurations: Array) -> Array:
     """Clearances (N, k), m, in the configurations (N, m)."""
-    return kernels.clearances_along(geometry.model, geometry.shapes, configurations)
+    return kernels.clearances_along(geometry.model, geometry.shapes, _plain(configurations))
 
 
 def clearances_of_poses(
     geometry: Geometry, positions: Array, quaternions: Array, angles: Array
 ) -> Array:
     """Clearances (N, k), m, at any attitude: positions (N, 3), quaternions (N, 4), q (N, n)."""
-    return kernels.clearances_of_poses(
-        geometry.model, geometry.shapes, positions, quaternions, angles
-    )
+    poses = map(_plain, (positions, quaternions, angles))
+    return kernels.clearances_of_poses(geometry.model, geometry.shapes, *poses)
+
+
+def _plain(values: Array) -> Array:
+    """Contiguous: the kernels would be compiled anew for any other order."""
+    return np.ascontiguousarray(values, dtype=float)
 
 
 def _row() -> Array:

@@ -26,9 +26,7 @@ from uvms_dynamics.kernels.distances import (
     spheroid_segment,
 )
 from uvms_dynamics.kernels.jit import inner, kernel, shared
-from uvms_dynamics.kernels.layout import HULL, JOINTS
-from uvms_dynamics.kernels.motion import check_quaternion
-from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_dynamics.kernels.layout import FIRST, HULL, JOINTS
 from uvms_dynamics.kernels.spatial import load3
 
 SHAPE_COLUMNS = 20
@@ -91,10 +89,12 @@ def clearances_into(model, shapes, position, rotation, q, work, out):
 
 
 @inner
-def level_rotation(yaw):
-    """The nine numbers of R_world_body of a level vehicle."""
-    c, s = math.cos(yaw), math.sin(yaw)
-    return c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0
+def level_clearances_into(model, shapes, configuration, work, out):
+    """The same in the configuration c (m,) = (x, y, z, psi, q) of a level vehicle."""
+    c, s = math.cos(configuration[3]), math.sin(configuration[3])
+    rotation = (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0)
+    position = (configuration[0], configuration[1], configuration[2])
+    clearances_into(model, shapes, position, rotation, configuration[4:], work, out)
 
 
 @kernel
@@ -103,10 +103,7 @@ def clearances_of(model, shapes, configuration):
     if configuration.shape[0] != np.int64(model[HULL, JOINTS]) + 4:
         raise ValueError("a configuration is x, y, z, psi and one angle for each joint")
     out = np.empty(clearance_count(model, shapes))
-    work = clearance_work(model, shapes)
-    position = load3(configuration.reshape(1, -1), 0, 0)
-    rotation = level_rotation(configuration[3])
-    clearances_into(model, shapes, position, rotation, configuration[4:], work, out)
+    level_clearances_into(model, shapes, configuration, clearance_work(model, shapes), out)
     return out
 
 
@@ -118,9 +115,7 @@ def clearances_along(model, shapes, configurations):
     out = np.empty((configurations.shape[0], clearance_count(model, shapes)))
     work = clearance_work(model, shapes)
     for i in range(configurations.shape[0]):
-        position = load3(configurations, i, 0)
-        rotation = level_rotation(configurations[i, 3])
-        clearances_into(model, shapes, position, rotation, configurations[i, 4:], work, out[i])
+        level_clearances_into(model, shapes, configurations[i], work, out[i])
     return out
 
 
@@ -129,14 +124,35 @@ def clearances_of_poses(model, shapes, positions, quaternions, angles):
     """Clearances (N, k), m, at positions (N, 3), quaternions (N, 4) and joint angles (N, n)."""
     if angles.shape[1] != np.int64(model[HULL, JOINTS]) or positions.shape[1] != 3:
         raise ValueError("poses have three coordinates and one angle for each joint")
+    if quaternions.shape[1] != 4:
+        raise ValueError("quaternions have 4 values: x, y, z, w")
+    if not positions.shape[0] == quaternions.shape[0] == angles.shape[0]:
+        raise ValueError("there must be as many positions as quaternions and joint angles")
     out = np.empty((positions.shape[0], clearance_count(model, shapes)))
     work = clearance_work(model, shapes)
     for i in range(positions.shape[0]):
-        check_quaternion(quaternions[i])
-        r = quat_to_matrix(quaternions[i])
-        rotation = (r[0, 0], r[0, 1], r[0, 2], r[1, 0], r[1, 1], r[1, 2], r[2, 0], r[2, 1], r[2, 2])
-        clearances_into(model, shapes, load3(positions, i, 0), rotation, angles[i], work, out[i])
+        rotation = _rotation(
+            quaternions[i, 0], quaternions[i, 1], quaternions[i, 2], quaternions[i, 3]
+        )
+        position = load3(positions, i, FIRST)
+        clearances_into(model, shapes, position, rotation, angles[i], work, out[i])
     return out
+
+
+@inner
+def _rotation(x, y, z, w):
+    """The nine numbers of R_world_body of a unit quaternion, row by row."""
+    return (
+        1.0 - 2.0 * (y * y + z * z),
+        2.0 * (x * y - z * w),
+        2.0 * (x * z + y * w),
+        2.0 * (x * y + z * w),
+        1.0 - 2.0 * (x * x + z * z),
+        2.0 * (y * z - x * w),
+        2.0 * (x * z - y * w),
+        2.0 * (y * z + x * w),
+        1.0 - 2.0 * (x * x + y * y),
+    )
 
 
 @inner
