@@ -6,7 +6,7 @@ from pydantic import Field
 from uvms_core.config import Config
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.postures import STOWED, posture_deg
+from uvms_core.vehicle.plausible.stability import postures
 from uvms_dynamics.geometry import OWN, Geometry, clearances_along
 
 
@@ -58,7 +58,6 @@ def clearance_margins(config: ClearanceConfig, vehicle: Vehicle, geometry: Geome
 
 def least_in_postures(vehicle: Vehicle, geometry: Geometry) -> Array:
     """Least distance (k,), m, of each pair in the postures of the vehicle file, at the origin."""
-    names = (STOWED, *vehicle.arm.postures_deg)
-    configurations = np.zeros((len(names), 4 + vehicle.n_joints))
-    configurations[:, 4:] = np.radians([posture_deg(vehicle.arm, name) for name in names])
+    angles = np.array([q for _, q in postures(vehicle)])
+    configurations = np.hstack([np.zeros((len(angles), 4)), angles])
     return clearances_along(geometry, configurations).min(axis=0)
