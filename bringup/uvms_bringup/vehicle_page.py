@@ -69,6 +69,7 @@ def _lines(summary: dict[str, Any]) -> Iterator[str]:
     )
     yield from _bodies(summary)
     yield from _floating(summary)
+    yield from _clearance(summary)
     yield from _thrusters(summary)
     yield from _thrust(summary)
     yield from _joints(summary)
@@ -112,6 +113,13 @@ def _floating(summary: dict[str, Any]) -> Iterator[str]:
     yield f"  natural periods, arm stowed: roll {_seconds(periods['roll'])}, pitch" + (
         f" {_seconds(periods['pitch'])}"
     )
+
+
+def _clearance(summary: dict[str, Any]) -> Iterator[str]:
+    if summary["clearance"]:
+        yield f"  {'least distance in posture':26}"
+    for name, least in summary["clearance"].items():
+        yield f"    {name:24}{1000.0 * least['least_m']:>6.1f} mm  {least['pair']}"
 
 
 def _degrees(value: float) -> str:

@@ -19,6 +19,7 @@ from uvms_core.vehicle.postures import STOWED
 from uvms_core.vehicle.resistance import axis_resistance
 from uvms_core.vehicle.statics import buoyancy, equilibrium, joint_loads, worst_joint_loads
 from uvms_dynamics import thruster_matrix
+from uvms_dynamics.geometry import OWN, build_geometry, clearances
 from uvms_dynamics.model.floating import natural_periods
 
 SAMPLES = 500
@@ -36,6 +37,7 @@ def vehicle_summary(vehicle: Vehicle) -> dict[str, Any]:
         "hull": _body(vehicle.hull),
         "links": {link.name: _body(link) for link in vehicle.arm.links},
         "floating": {name: _floating(vehicle, q) for name, q in postures(vehicle)},
+        "clearance": _clearance(vehicle),
         "periods_s": _periods(vehicle),
         "thrusters": {
             thruster.name: {
@@ -75,6 +77,21 @@ def _floating(vehicle: Vehicle, q: Array) -> dict[str, float]:
         "righting_nm_per_deg": rest.righting_nm_per_deg,
         "metacentric_height_m": rest.metacentric_height_m,
     }
+
+
+def _clearance(vehicle: Vehicle) -> dict[str, dict[str, Any]]:
+    """Least distance of arm, hull and links in each posture, m, and between which two.
+
+    Empty where no two bodies of the vehicle could touch.
+    """
+    geometry = build_geometry(vehicle)
+    own = [k for k, pair in enumerate(geometry.pairs) if pair.kind in OWN]
+    found = {}
+    for name, q in postures(vehicle) if own else ():
+        values = clearances(geometry, np.concatenate([np.zeros(4), q]))
+        least = min(own, key=values.__getitem__)
+        found[name] = {"least_m": float(values[least]), "pair": str(geometry.pairs[least])}
+    return found
 
 
 def _periods(vehicle: Vehicle) -> dict[str, float]:

@@ -15,6 +15,7 @@ def test_the_summary_is_for_people(capsys):
     assert text.startswith("warning: thrusters: the 6 of them cannot push along pitch alone")
     assert "mass 15.702 kg, displaces 15.717 kg: 0.1472 N up" in text
     assert "pitch            0 to 0        N m  out of reach" in text
+    assert "extended_starboard         1.5 mm  upper_arm and hull" in text
 
 
 def test_the_json_is_for_scripts(capsys):
@@ -26,6 +27,8 @@ def test_the_json_is_for_scripts(capsys):
     assert summary["net_buoyancy_n"] == pytest.approx(-1820.2, abs=0.5)
     assert summary["authority"]["surge"] == pytest.approx([-98.0, 98.0])
     assert summary["joints"]["shoulder"]["brake_nm"] == 25.0
+    least = {"least_m": pytest.approx(0.0390, abs=5e-5), "pair": "upper_arm and hull"}
+    assert summary["clearance"]["extended_port"] == least
 
 
 def test_errors_end_in_code_2(capsys):
