@@ -29,7 +29,7 @@ from uvms_planner.joined_path import JoinedPath
 from uvms_planner.joint_motion import JointTrajectory, check_joint_goal
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
-from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
+from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics, why_not
 from uvms_planner.segment import Knot, Samples, reference
 from uvms_planner.solver import StepSolver
 from uvms_planner.stop import Stop
@@ -228,9 +228,4 @@ def _sample_times(config: PlannerConfig) -> Array:
 
 
 def _unreachable(goal: PathFollower, step: FollowedStep, config: PlannerConfig) -> str:
-    time = goal.elapsed(step.knot.stamp)
-    allowed = config.projection.position_tolerance_m
-    return (
-        f"aborted at t = {time:g} s: the nearest reachable point is {step.choice.distance:.4g} m"
-        f" away, allowed {allowed:g} m"
-    )
+    return f"aborted at t = {goal.elapsed(step.knot.stamp):g} s: {why_not(step.choice, config)}"
