@@ -80,7 +80,6 @@ def _fill(hessian, gradient, equal, rows, limits, x, held, active, matrix, vecto
             matrix[count + a, i] = equal[a, i]
     for a in range(rows.shape[0]):
         row = count + equations + a
-        matrix[row, row] = -1e-12
         if not active[a]:
             matrix[row, row] = 1.0
             continue

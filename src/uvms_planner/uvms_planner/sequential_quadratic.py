@@ -19,7 +19,7 @@ from uvms_planner.projection import configuration_jacobian, project, within_tole
 from uvms_planner.refine import normal_equations
 
 HALVINGS = 10
-ATTITUDE_MARGIN = 1e-7  # rad inside the limits, so that rounding does not end beyond them
+ATTITUDE_MARGIN = 1e-9  # rad inside the limits, so that rounding does not end beyond them
 DIFFERENCE = 1e-5  # rad, for the slope of the free attitude
 SLACKS = 2  # of roll and of pitch: a start beyond the limits has a program, too
 FIRST_WEIGHT = 1e4  # of a radian beyond a limit, over the steepest slope of the cost
@@ -35,8 +35,8 @@ def solve_step(model, problem, starts, iterations, tolerance):
     """
     size = problem.configuration.shape[0]
     best, trial, attitude = np.zeros(size), np.zeros(size), np.zeros(2)
-    found, excess, value, merit = False, np.inf, np.inf, np.inf
-    evaluations, on_path, weight = 0, 0, 0.0
+    found, excess, value = False, np.inf, np.inf
+    evaluations, on_path = 0, 0
     for s in range(starts.shape[0]):
         copy_into(trial, starts[s])
         valid, trial_excess, trial_value = _evaluate(model, problem, trial, attitude)
@@ -50,8 +50,8 @@ def solve_step(model, problem, starts, iterations, tolerance):
 
     step = np.zeros(size)
     for _ in range(iterations):
-        weight = _program(model, problem, best, weight, step)
-        if _longest(problem, step) < tolerance:
+        weight = _program(model, problem, best, step)
+        if excess == 0.0 and _longest(problem, step) < tolerance:
             break
         merit, share, improved = value + weight * excess, 1.0, False
         for _try in range(HALVINGS):
@@ -95,11 +95,12 @@ def _evaluate(model, problem, increment, attitude):
 
 
 @shared
-def _program(model, problem, increment, weight, step):
+def _program(model, problem, increment, step):
     """Fill `step` (m,) with the solution of the quadratic program; the weight of the penalty.
 
     In per-step ranges. The attitude's limits come in only where the solution without them would
-    break them.
+    break them. The penalty is exact where it weighs more than their multipliers; twice as much,
+    since a much greater one forbids steps along a curved limit.
     """
     size = increment.shape[0]
     equations = 6 if problem.oriented else 3
@@ -122,7 +123,7 @@ def _program(model, problem, increment, weight, step):
             upper[i] = (problem.upper[i] - increment[i]) / reach[i]
         lower[i], upper[i] = min(lower[i], 0.0), max(upper[i], 0.0)
     x = np.zeros(size + SLACKS)
-    none, nothing = np.zeros((0, size + SLACKS)), np.zeros(0)
+    none, nothing, weight = np.zeros((0, size + SLACKS)), np.zeros(0), 0.0
     solve_program(
         wide[:size, :size].copy(), slope[:size].copy(), lower[:size].copy(), upper[:size].copy(),
         equal[:, :size].copy(), none[:, :size].copy(), nothing, x[:size], nothing,
@@ -133,13 +134,15 @@ def _program(model, problem, increment, weight, step):
         for i in range(size):
             x[i] = 0.0
             steepest = max(steepest, abs(slope[i]))
-        weight = max(weight, FIRST_WEIGHT * steepest)
+        heavy = FIRST_WEIGHT * steepest
         for k in range(SLACKS):
             i = size + k
             x[i] = max(-limits[2 * k], -limits[2 * k + 1], 0.0)
-            upper[i], slope[i], wide[i, i] = np.inf, weight, 1e-6 * weight
+            upper[i], slope[i], wide[i, i] = np.inf, heavy, 1e-6 * heavy
         weights = np.zeros(2 * SLACKS)
         solve_program(wide, slope, lower, upper, equal, rows, limits, x, weights)
+        for a in range(2 * SLACKS):
+            weight = max(weight, 2.0 * weights[a])
     for i in range(size):
         step[i] = x[i] * reach[i]
     return weight
