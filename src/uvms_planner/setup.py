@@ -33,6 +33,8 @@ setup(
         ],
         "uvms.planners": [
             "genetic = uvms_planner.methods.genetic:Genetic",
+            "paper = uvms_planner.methods.paper:Paper",
+            "sqp = uvms_planner.methods.sqp:Sqp",
             "least_norm = uvms_planner.methods.least_norm:LeastNorm",
             "arm_only = uvms_planner.methods.arm_only:ArmOnly",
             "vehicle_only = uvms_planner.methods.vehicle_only:VehicleOnly",

@@ -4,6 +4,7 @@ from collections.abc import Iterator, Mapping
 
 from uvms_analysis.log.read import RunLog
 from uvms_core import topics
+from uvms_core.diagnostics import STEPS_BEYOND_LIMITS
 
 REFUSED, HELD, UNSAFE, RESETS = "refused", "held", "unsafe_outputs", "resets"
 COUNTED = (
@@ -20,6 +21,7 @@ COUNTED = (
     "late",
     "abandoned_ticks",
     "lockstep_timeouts",
+    STEPS_BEYOND_LIMITS,
 )
 """Values of a node's diagnostics that only rise; a node that is started again begins at zero."""
 

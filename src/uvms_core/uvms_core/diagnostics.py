@@ -9,6 +9,9 @@ OK, WARN, ERROR, STALE = range(4)
 GOALS_ACCEPTED, PAUSES = "goals_accepted", "pauses"
 """Values of the planner and of the plant: what was asked of them, by whomever."""
 
+STEPS_BEYOND_LIMITS = "steps_beyond_limits"
+"""Value of the planner: steps that it planned beyond its own limits."""
+
 
 class Trouble(NamedTuple):
     """Why what a part puts out cannot be relied on: how bad it is, and what it is in words.

@@ -4,6 +4,7 @@ from dataclasses import dataclass
 
 from uvms_core.signals import Array
 from uvms_dynamics import Model
+from uvms_planner.exceeded import LimitExceeded
 from uvms_planner.fitness import judge
 from uvms_planner.problem import StepProblem
 from uvms_planner.projection import project
@@ -22,6 +23,7 @@ class Choice:
     evaluations: int
     feasible: int  # candidates within e and the attitude limits
     discarded: int  # candidates not within e
+    limits_exceeded: tuple[LimitExceeded, ...] = ()  # what it takes beyond the planned limits
 
 
 def nearest_on_path(model: Model, problem: StepProblem, increment: Array) -> Choice:

@@ -77,6 +77,11 @@ class LimitsConfig(Config):
         description="m, greatest planned depth of the vehicle's origin; none: as far above the"
         " vehicle file's seabed, where it has one",
     )
+    strict: bool = Field(
+        True,
+        description="abort the goal where a step is possible only beyond the planned"
+        " accelerations; false: take the step, report the limits exceeded, and count it",
+    )
     roll_max_deg: float = Field(
         5.0, gt=0, le=90.0, description="deg, roll that the vehicle may take up freely, eq. (17)"
     )
@@ -166,6 +171,46 @@ class GeneticConfig(Config):
     )
 
 
+class PaperConfig(Config):
+    """The genetic algorithm as printed, Fig. 3; the paper gives the bits and no other number."""
+
+    bits: int = Field(
+        1000, ge=64, le=10000, description="length of the chromosome, all genes together (paper)"
+    )
+    population: int = Field(
+        100, ge=4, le=10000, description="individuals of a generation (our choice; none printed)"
+    )
+    generations: int = Field(
+        100, ge=1, le=10000, description="generations of a step at most (our choice; none printed)"
+    )
+    patience: int = Field(
+        30,
+        ge=1,
+        le=10000,
+        description="generations without a better result that end the search (our choice;"
+        " the paper: until no better result is generated)",
+    )
+    crossover_rate: float = Field(
+        0.8, ge=0, le=1, description="share of pairs that cross over (our choice; none printed)"
+    )
+    mutation_rate: float = Field(
+        0.001,
+        ge=0,
+        le=1,
+        description="probability that a bit flips: one bit of a chromosome (our choice; none"
+        " printed)",
+    )
+
+
+class SqpConfig(Config):
+    """Sequential quadratic programming."""
+
+    iterations: int = Field(30, ge=1, le=1000, description="quadratic programs of a step at most")
+    tolerance: float = Field(
+        1e-6, gt=0, le=1e-2, description="step that ends the search, of a variable's full rate"
+    )
+
+
 class PlannerConfig(PluginConfig):
     """The motion planner."""
 
@@ -173,9 +218,10 @@ class PlannerConfig(PluginConfig):
 
     method: str = Field(
         "genetic",
-        description="how each step is chosen: genetic (the paper's), least_norm (weighted"
-        " pseudo-inverse), arm_only, vehicle_only (the arm keeps its posture), that of an"
-        " installed package, or a class as my_package.my_module:MyMethod",
+        description="how each step is chosen: genetic (the paper's, improved), paper (as printed),"
+        " sqp (sequential quadratic programming), least_norm (weighted pseudo-inverse), arm_only,"
+        " vehicle_only (the arm keeps its posture), that of an installed package, or a class as"
+        " my_package.my_module:MyMethod",
     )
     step_s: float = Field(0.5, gt=0, le=10.0, description="s, one planner step")
     sample_s: float = Field(0.05, gt=0, le=1.0, description="s, spacing of the reference's samples")
@@ -203,3 +249,5 @@ class PlannerConfig(PluginConfig):
     )
     fitness: FitnessConfig = Field(FitnessConfig(), description="fitness, eq. (18)")
     genetic: GeneticConfig = Field(GeneticConfig(), description="genetic algorithm, Fig. 3")
+    paper: PaperConfig = Field(PaperConfig(), description="the same as printed, method paper")
+    sqp: SqpConfig = Field(SqpConfig(), description="method sqp")

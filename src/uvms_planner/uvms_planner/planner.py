@@ -27,7 +27,7 @@ from uvms_planner.joint_motion import JointTrajectory
 from uvms_planner.on_path import FollowedStep, OnPath
 from uvms_planner.projection import tool_pose
 from uvms_planner.proposal import Progress, Proposal, silent
-from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics
+from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics, why_not
 from uvms_planner.segment import Knot, Samples, reference
 from uvms_planner.solver import StepSolver
 from uvms_planner.stop import Stop
@@ -240,9 +240,4 @@ def _sample_times(config: PlannerConfig) -> Array:
 
 
 def _unreachable(goal: OnPath, step: FollowedStep, config: PlannerConfig) -> str:
-    time = goal.elapsed(step.knot.stamp)
-    allowed = config.projection.position_tolerance_m
-    return (
-        f"aborted at t = {time:g} s: the nearest reachable point is {step.choice.distance:.4g} m"
-        f" away, allowed {allowed:g} m"
-    )
+    return f"aborted at t = {goal.elapsed(step.knot.stamp):g} s: {why_not(step.choice, config)}"

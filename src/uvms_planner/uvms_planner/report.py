@@ -5,7 +5,11 @@ from typing import Any
 
 import numpy as np
 
+from uvms_core.diagnostics import STEPS_BEYOND_LIMITS
 from uvms_core.signals import Array, Reference
+from uvms_planner.choice import Choice
+from uvms_planner.config import PlannerConfig
+from uvms_planner.exceeded import LimitExceeded
 from uvms_planner.on_path import FollowedStep
 from uvms_planner.solver import StepSolver
 
@@ -44,6 +48,8 @@ class StepDiagnostics:
     feasible: int  # of them within e and the attitude limits
     discarded: int  # of them not within e
     planned_error: float  # m
+    limits_exceeded: tuple[LimitExceeded, ...]  # by the step, the most exceeded first
+    steps_beyond_limits: int  # so far, of this planner
 
     @staticmethod
     def of(method: str, solver: StepSolver, step: FollowedStep) -> "StepDiagnostics":
@@ -61,6 +67,8 @@ class StepDiagnostics:
             feasible=choice.feasible,
             discarded=choice.discarded,
             planned_error=step.planned_error,
+            limits_exceeded=choice.limits_exceeded,
+            steps_beyond_limits=solver.steps_beyond_limits,
         )
 
     def values(self) -> dict[str, Any]:
@@ -78,6 +86,8 @@ class StepDiagnostics:
             "feasible": self.feasible,
             "discarded": self.discarded,
             "planned_error_m": self.planned_error,
+            "limits_exceeded": "; ".join(map(str, self.limits_exceeded)) or "none",
+            STEPS_BEYOND_LIMITS: self.steps_beyond_limits,
         }
 
 
@@ -97,3 +107,26 @@ class PlannerStep:
             values["elapsed_s"] = self.feedback.elapsed
             values["tracking_error_m"] = self.feedback.tracking_error
         return values | (self.step.values() if self.step is not None else {})
+
+
+def why_not(choice: Choice, config: PlannerConfig) -> str:
+    """Why a choice that is not valid cannot be planned: the limit, the value, the bound."""
+    allowed = config.projection
+    if choice.limits_exceeded:
+        listed = "; ".join(map(str, choice.limits_exceeded))
+        return f"the path can be followed only beyond a limit: {listed}"
+    if choice.distance >= allowed.position_tolerance_m:
+        return (
+            f"the nearest reachable point is {choice.distance:.4g} m away, allowed"
+            f" {allowed.position_tolerance_m:g} m"
+        )
+    if np.rad2deg(choice.angle) >= allowed.orientation_tolerance_deg:
+        return (
+            f"the nearest reachable orientation is {np.rad2deg(choice.angle):.4g} deg away,"
+            f" allowed {allowed.orientation_tolerance_deg:g} deg"
+        )
+    return (
+        "the attitude that the vehicle would take up freely is"
+        f" {np.rad2deg(choice.attitude_violation):.4g} deg beyond its limits, roll"
+        f" {config.limits.roll_max_deg:g} deg and pitch {config.limits.pitch_max_deg:g} deg"
+    )

@@ -4,6 +4,8 @@ All methods share the projection, the limits and the cost of the problem; what d
 classes of `methods/`.
 """
 
+from dataclasses import replace
+
 import numpy as np
 
 from uvms_core.end_effector_path import PathSample
@@ -15,6 +17,7 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_planner.choice import Choice
 from uvms_planner.config import PlannerConfig
 from uvms_planner.constraints import free_attitude
+from uvms_planner.exceeded import limits_exceeded
 from uvms_planner.fitness import self_disturbance
 from uvms_planner.interfaces import StepMethod
 from uvms_planner.joined_path import JoinedPath
@@ -35,6 +38,7 @@ class StepSolver:
         self.limits = StepLimits.of(self.motion_limits, config.step_s)
         self._scales = StepScales.of(vehicle, config)
         self.config = config
+        self.steps_beyond_limits = 0
         self._method: StepMethod = create(config, vehicle, seed)
         self._readiness = self._method.readiness(_readiness(self._scales, config))
         self._motion_weights = _motion_weights(len(self.limits.reach), config)
@@ -104,14 +108,21 @@ class StepSolver:
     def choose(self, problem: StepProblem, index: int) -> Choice:
         """The increment of step number `index`; the same for the same seed and index.
 
-        Where nothing within the accelerations is on the path, the rates alone bound the step.
+        Where nothing within the accelerations is on the path, the rates alone bound the step, and
+        the choice says what it takes beyond the limits; where they are strict it is not valid.
         """
         choice = self._method.choose(problem, index)
         if choice.valid:
             return choice
         limits = self.limits.rate_increments(problem.configuration)
         lower, upper = self._method.bounds(*limits)
-        return self._method.choose(problem._replace(lower=lower, upper=upper), index)
+        choice = self._method.choose(problem._replace(lower=lower, upper=upper), index)
+        if not choice.valid:
+            return choice
+        beyond = limits_exceeded(problem, choice.increment, self.joints.names)
+        strict = self.config.limits.strict
+        self.steps_beyond_limits += not strict
+        return replace(choice, valid=not strict, limits_exceeded=beyond)
 
     def disturbance(self, problem: StepProblem, increment: Array) -> Array:
         """F_dis (6,) of eq. (16) at the end of the step, without looking ahead."""
