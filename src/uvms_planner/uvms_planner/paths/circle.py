@@ -49,8 +49,8 @@ class Circle(EasedShape):
     towards: Offset | None = Field(
         None,
         description="direction from the start to the circle's centre, in the frame's axes (its part"
-        " in the plane counts); none: the plane's first axis, or with `normal` the axis X, Y or Z that is"
-        " most nearly in the plane",
+        " in the plane counts); none: the plane's first axis, or with `normal` the axis X, Y or Z"
+        " that is most nearly in the plane",
     )
     turns: float = Field(
         1.0,
