@@ -1,39 +1,14 @@
 """The planner's actions on the whole graph: feedback, success, cancel, one goal at a time."""
 
-from collections.abc import Iterator
-from contextlib import contextmanager
-
 import numpy as np
 import pytest
 from action_msgs.msg import GoalStatus
-from in_process import graph_of, spin_until
+from in_process import spin_until
+from led_graph import running
 
 from uvms_bringup.errors import RunError
-from uvms_bringup.pace import Pace
-from uvms_bringup.ros.conductor import Conductor
-from uvms_bringup.ros.parameter_file import node_parameters
-from uvms_bringup.ros.run_nodes import make_node
 from uvms_bringup.scenario import load_scenario
-from uvms_bringup.session import vehicle_file
-from uvms_core.ros.spin import Spinner
 from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
-
-
-@contextmanager
-def running(folder, duration_s: float, goal) -> Iterator[tuple[Spinner, Conductor]]:
-    """The composed graph, led up to the point where time goes."""
-    scenario = load_scenario("manipulation", duration_s=duration_s)
-    vehicle = scenario.load_vehicle()
-    file = vehicle_file(folder, vehicle)
-    parameters = node_parameters(scenario, file, Pace.parse("lockstep"))
-    makers = [lambda node=node, own=own: make_node(node, own) for node, own in parameters.items()]
-
-    def lead() -> Conductor:
-        return Conductor(lambda *message: None, lambda: None, vehicle.joint_names)
-
-    with graph_of(lead, *makers) as (spinner, (conductor, *_)):
-        conductor.conduct(spinner, goal)
-        yield spinner, conductor
 
 
 def path_from_start(duration_s: float, offset: tuple[float, float, float]) -> PathGoal:

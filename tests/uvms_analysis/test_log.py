@@ -4,6 +4,7 @@ import os
 import signal
 import subprocess
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -292,6 +293,20 @@ def test_a_path_comes_back_exactly():
     np.testing.assert_array_equal(back.times, goal.times)
     np.testing.assert_array_equal(back.positions, goal.positions)
     assert back.orientations.shape == (0, 4)
+    pointing = replace(
+        goal, tool_axis=np.eye(3)[2], axis_directions=rng.normal(size=(3, 3)), time_scale_max=2.0
+    )
+    back = path_from_json(path_to_json(pointing))
+    np.testing.assert_array_equal(back.tool_axis, pointing.tool_axis)
+    np.testing.assert_array_equal(back.axis_directions, pointing.axis_directions)
+    assert back.time_scale_max == 2.0
+
+
+def test_a_path_of_an_older_log_asks_for_no_axis():
+    old = '{"times": [0, 1], "positions": [[0, 0, 1], [0, 0, 2]], "orientations": []}'
+    goal = path_from_json(old)
+    assert (goal.tool_axis.shape, goal.axis_directions.shape) == ((0,), (0, 3))
+    assert goal.time_scale_max == 1.0
 
 
 @pytest.mark.parametrize("text", ["{", "[]", '{"times": [0], "positions": [[1, 2]]}'])

@@ -1,6 +1,6 @@
 """Signals to messages and back: exact, checked, and clear about what is wrong."""
 
-from dataclasses import fields, is_dataclass
+from dataclasses import fields, is_dataclass, replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,6 +10,7 @@ from examples import JOINTS, carrying, example, names_of
 from uvms_core import topics
 from uvms_core.errors import SignalError
 from uvms_core.messages import from_message, to_message
+from uvms_core.rotations import quat_to_matrix
 from uvms_core.sensors.gps import swap_ned_enu
 from uvms_core.signals import GpsSample, Odometry
 
@@ -240,8 +241,13 @@ def test_faults_inside_a_point_are_named(rng):
         (lambda m: setattr(m.positions[1], "z", NAN), "positions[1].z is nan; it must be finite"),
         (
             lambda m: setattr(m.header, "frame_id", "odom"),
-            "header.frame_id is 'odom'; it must be 'map_ned'",
+            "header.frame_id is 'odom'; it must be 'map_ned' or 'map'",
         ),
+        (
+            lambda m: setattr(m, "max_time_scale", 0.5),
+            "max_time_scale is 0.5; it must be >= 1, or 0",
+        ),
+        (lambda m: setattr(m.tool_axis, "x", 1.0), "axis_directions has 0 values; it must have 3"),
     ],
 )
 def test_a_wrong_path_is_refused(change, text, rng):
@@ -251,6 +257,42 @@ def test_a_wrong_path_is_refused(change, text, rng):
     with pytest.raises(SignalError) as fault:
         from_message(action, msg)
     assert str(fault.value) == f"follow_end_effector_path: {text}"
+
+
+def test_a_path_in_map_is_the_same_path_in_map_ned(rng):
+    """East, north, up become north, east, down, for positions, orientations and directions."""
+    action = topics.FOLLOW_END_EFFECTOR_PATH
+    goal = example(action.goal, rng)
+    msg = as_object(to_message(action, goal))
+    msg.header.frame_id = "map"
+    turned = from_message(action, msg)
+    east, north, up = goal.positions.T
+    np.testing.assert_array_equal(turned.positions, np.column_stack([north, east, -up]))
+    for before, after in zip(goal.orientations, turned.orientations, strict=True):
+        x, y, z = quat_to_matrix(before)
+        np.testing.assert_allclose(quat_to_matrix(after), [y, x, -z], atol=1e-12)
+
+
+def test_a_tool_axis_and_its_directions_are_made_unit_vectors(rng):
+    action = topics.FOLLOW_END_EFFECTOR_PATH
+    plain = example(action.goal, rng)
+    rows = np.array([[0.0, 0.0, 2.0], [0.0, 3.0, 4.0], [1.0, 0.0, 0.0]])
+    goal = replace(
+        plain,
+        orientations=np.empty((0, 4)),
+        tool_axis=np.array([0.0, 0.0, 5.0]),
+        axis_directions=rows,
+        time_scale_max=3.0,
+    )
+    msg = as_object(to_message(action, goal))
+    back = from_message(action, msg)
+    np.testing.assert_allclose(back.tool_axis, [0.0, 0.0, 1.0])
+    np.testing.assert_allclose(back.axis_directions, [[0, 0, 1], [0, 0.6, 0.8], [1, 0, 0]])
+    assert back.time_scale_max == 3.0
+    msg.header.frame_id = "map"
+    np.testing.assert_allclose(
+        from_message(action, msg).axis_directions, [[0, 0, -1], [0.6, 0, -0.8], [0, 1, 0]]
+    )
 
 
 def test_topics_without_a_signal_say_so():

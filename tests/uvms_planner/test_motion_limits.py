@@ -1,5 +1,7 @@
 """Limits of the plan by rule from the vehicle file, and as the configuration gives them."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from planner_rig import drive, reference_vehicle
@@ -171,3 +173,17 @@ def test_twenty_metres_in_five_hundred_seconds_are_accepted():
     assert result.success
     way = run.joined("end_effector")[-1] - run.joined("end_effector")[0]
     assert way == pytest.approx([20.0, 0.0, 0.0], abs=1e-6)
+
+
+@pytest.mark.parametrize("name", VEHICLES)
+def test_the_page_on_paths_has_the_limits_of_every_vehicle(name):
+    vehicle = load_vehicle(name)
+    limits = limits_of(vehicle)
+    rate, acceleration = limits.rate, limits.acceleration
+    numbers = (
+        f"{rate[0]:.2f} | {rate[2]:.2f} | {np.degrees(rate[3]):.1f}",
+        f"{acceleration[0]:.3f} | {acceleration[2]:.3f} | {np.degrees(acceleration[3]):.1f}",
+        f"{limits.lower[2]:.2f}",
+    )
+    page = Path(__file__).parents[2] / "docs/paths.md"
+    assert f"| `{name}` | {' | '.join(numbers)} |" in page.read_text(encoding="utf-8")

@@ -11,6 +11,7 @@ from scipy.integrate import quad
 from scipy.spatial.transform import Rotation
 
 from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.signals import PathGoal
 from uvms_planner import PathSpec
 from uvms_planner.paths.timing import eased
 
@@ -203,7 +204,8 @@ def test_waypoints_turn_the_tool_from_its_orientation_at_the_start():
     rates = (turns[1:] * turns[:-1].inv()).magnitude() / 0.05
     assert rates[0] < 1e-3 * rates.max()
     assert rates[-1] < 1e-3 * rates.max()
-    assert rates.max() == pytest.approx(np.deg2rad(30.0) / 10.0 * 1.875, rel=1e-3)
+    # no faster than from rest to rest on each way, and never as fast again as the mean
+    assert np.deg2rad(3.0) < rates.max() <= 1.875 * np.deg2rad(3.0)
 
 
 def table(path, rows, header=("t", "x", "y", "z")):
@@ -245,7 +247,7 @@ def test_a_table_of_a_circle_is_a_circle_in_between(tmp_path):
     file = table(tmp_path / "c.csv", np.column_stack([times, offsets]))
     _, dense = offsets_of({"csv": file}, point_every_s=0.1)
     assert len(dense) == 601
-    assert np.abs(np.linalg.norm(dense - [0.0, 0.3, 0.0], axis=1) - 0.3).max() < 1e-6
+    assert np.abs(np.linalg.norm(dense - [0.0, 0.3, 0.0], axis=1) - 0.3).max() < 5e-6
 
 
 def every_word(tmp_path):
@@ -358,3 +360,19 @@ def test_a_table_that_is_no_path_is_refused_with_file_and_place(tmp_path, text, 
     with pytest.raises(ValidationError) as fault:
         PathSpec.model_validate({"csv": str(file)})
     assert all(word in str(fault.value) for word in ["bad.csv", *words]), fault.value
+
+
+def test_waypoints_at_uneven_times_do_not_swing_out():
+    points, times = [[1.0, 0, 0], [1.2, 0, 0], [0.9, 0, 0], [0.0, 0, 0]], [10.0, 10.1, 20.0, 30.0]
+    way = offsets_of({"waypoints": {"points_m": points, "times_s": times}})[1][:, 0]
+    assert way.max() < 1.2 + 0.5 * 0.2
+    assert way.min() > -1e-9
+
+
+def test_waypoints_are_the_curve_that_their_points_alone_would_be():
+    points, times = [[0.2, 0, 0], [0.3, 0.2, 0], [0.1, 0.3, 0.2]], [10.0, 18.0, 30.0]
+    goal = goal_of({"waypoints": {"points_m": points, "times_s": times}})
+    alone = np.vstack([TOOL, TOOL + points])
+    own = EndEffectorPath(PathGoal(np.array([0.0, *times]), alone, np.zeros((0, 4))))
+    at = np.linspace(0.0, 30.0, 901)
+    assert np.abs(EndEffectorPath(goal).positions(at) - own.positions(at)).max() < 1e-4

@@ -126,7 +126,7 @@ def _safe_slopes(spacing: Array, steps: Array) -> Array:
     rate = steps / spacing
     before, after = rate[:-1], rate[1:]
     left, right = 2 * spacing[1:] + spacing[:-1], spacing[1:] + 2 * spacing[:-1]
-    with np.errstate(divide="ignore", invalid="ignore"):
+    with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         mean = (left + right) / (left / before + right / after)
     slower = np.minimum(np.abs(before), np.abs(after))
     slope = np.zeros((len(steps) + 1, steps.shape[1]))

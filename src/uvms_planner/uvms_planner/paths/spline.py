@@ -3,14 +3,10 @@
 from itertools import pairwise
 
 import numpy as np
-from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
-from uvms_core.signals import Array
-from uvms_planner.paths.timing import quintic
-
-AT_REST = [(1, np.zeros(3)), (2, np.zeros(3))]
-"""No velocity and no acceleration."""
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.signals import Array, PathGoal
 
 
 def dense_times(times: Array, spacing: float) -> Array:
@@ -23,25 +19,23 @@ def dense_times(times: Array, spacing: float) -> Array:
 
 
 def through(times: Array, points: Array, wanted: Array) -> Array:
-    """The quintic spline through `points` (n, 3) at `times` (n,), at `wanted` (k,); (k, 3).
+    """The curve through `points` (n, 3) at `times` (n,), at `wanted` (k,) s; (k, 3).
 
-    Velocity and acceleration are zero at both ends and continuous in between (C4).
+    It is that of the planner, `EndEffectorPath`, so that points mean the same whoever gives them. A
+    spline would be smoother by one derivative and swing out by metres where times are uneven.
     """
-    # Measured in mean intervals: the powers of large times would spoil the equations.
-    unit = float(times[-1] - times[0]) / (len(times) - 1)
-    curve = make_interp_spline(times / unit, points, k=5, bc_type=(AT_REST, AT_REST))
-    found = curve(wanted / unit)
-    given = np.searchsorted(wanted, times)
-    found[given] = points  # exactly, not to the rounding of the equations
+    found = EndEffectorPath(PathGoal(times, points, np.zeros((0, 4)))).positions(wanted)
+    found[np.searchsorted(wanted, times)] = points  # exactly, not to the rounding of polynomials
     return found
 
 
 def turned(times: Array, rotations: Rotation, wanted: Array) -> Array:
     """Quaternions (k, 4) at `wanted` (k,): from each rotation the shorter way to the next.
 
-    Each turn begins and ends at rest, u = 10 x^3 - 15 x^4 + 6 x^5, x the share of its time.
+    As `through`: at rest at both ends, where two follow each other that are equal, and nowhere
+    else.
     """
-    index = np.clip(np.searchsorted(times, wanted, side="right") - 1, 0, len(times) - 2)
-    share = quintic((wanted - times[index]) / (times[index + 1] - times[index]))
-    arcs = (rotations[1:] * rotations[:-1].inv()).as_rotvec()
-    return (Rotation.from_rotvec(share[:, None] * arcs[index]) * rotations[index]).as_quat()
+    points = np.zeros((len(times), 3))
+    found = EndEffectorPath(PathGoal(times, points, rotations.as_quat())).samples(wanted).quaternion
+    assert found is not None  # the goal has orientations
+    return found

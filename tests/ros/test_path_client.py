@@ -1,0 +1,81 @@
+"""The example client on the whole graph: a circle in either frame, its feedback, and cancelling."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from in_process import spin_until
+from led_graph import running
+
+from uvms_core.signals import to_nanoseconds
+
+FOLDER = Path(__file__).resolve().parents[2] / "examples/path_client"
+
+
+@pytest.fixture
+def example(monkeypatch):
+    """The module of the example, as it stands there."""
+    monkeypatch.syspath_prepend(FOLDER)
+    import path_client
+
+    yield path_client
+    sys.modules.pop("path_client")
+
+
+def followed(example, folder, frame, duration_s=9.0):
+    """Where the tool was in map_ned (k, 3) while a client led it round a circle in `frame`."""
+    with running(folder, duration_s, None, lambda: example.PathClient(frame)) as (
+        spinner,
+        conductor,
+        client,
+    ):
+        spin_until(spinner, lambda: client.ready)
+        times, positions = example.circle(client.tool, 0.01, 4.0)
+        client.send(times, positions)
+        way = []
+
+        def over() -> bool:
+            way.append(client.tool)
+            return client.ending is not None
+
+        spin_until(spinner, over)
+        assert (client.ending, conductor.goal_handle) == ("succeeded", None), client.message
+        assert client.feedback.duration == pytest.approx(4.0)
+        assert client.feedback.tracking_error < 0.02
+    return np.array(way) @ example.FRAMES[frame] - positions[0] @ example.FRAMES[frame]
+
+
+def test_a_circle_is_the_same_in_map_with_its_axes_changed(example, tmp_path):
+    """In map_ned it goes out to the north, in map out to the east; nowhere up or down."""
+    north = followed(example, tmp_path, "map_ned")
+    east = followed(example, tmp_path, "map")
+    for way, out, across in ((north, 0, 1), (east, 1, 0)):
+        assert way[:, out].max() == pytest.approx(0.02, abs=5e-4)
+        assert way[:, out].min() > -5e-4
+        assert np.abs(way[:, across]).max() < 0.0105
+        assert np.abs(way[:, 2]).max() < 1e-4
+
+
+def test_what_is_cancelled_ends_so(example, tmp_path):
+    with running(tmp_path, 60.0, None, lambda: example.PathClient("map")) as (
+        spinner,
+        conductor,
+        client,
+    ):
+        spin_until(spinner, lambda: client.ready)
+        client.send(*example.circle(client.tool, 0.05, 50.0))
+        spin_until(spinner, lambda: client.feedback is not None)
+        client.cancel()
+        spin_until(spinner, lambda: client.ending is not None)
+        assert conductor.stamp < to_nanoseconds(50.0)
+    assert (client.ending, client.message) == ("cancelled", "cancelled")
+
+
+def test_what_cannot_be_followed_is_told_to_be_rejected(example, tmp_path):
+    with running(tmp_path, 20.0, None, lambda: example.PathClient("map")) as (spinner, _, client):
+        spin_until(spinner, lambda: client.ready)
+        client.send(*example.circle(client.tool, 40.0, 4.0))
+        spin_until(spinner, lambda: client.ending is not None)
+    assert client.ending == "rejected"
+    assert "diagnostics" in client.message
