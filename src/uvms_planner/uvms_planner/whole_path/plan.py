@@ -10,7 +10,7 @@ from uvms_dynamics.kernels.jit import kernel
 from uvms_planner.segment import Samples
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan_report import PlanReport, report_of
-from uvms_planner.whole_path.sample import THRUST, sample_values, vehicle_motion
+from uvms_planner.whole_path.sample import THRUST, read_aim, sample_values, vehicle_motion
 from uvms_planner.whole_path.spline import DEGREE, basis_at
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
 
@@ -78,8 +78,10 @@ def _vehicle_motions(model, motion, target):
     """Position, velocity and acceleration (k, 3, 3) of the vehicle."""
     out = np.empty((motion.shape[0], 3, 3))
     frames, tool = np.empty((motion.shape[2], FRAME_COLUMNS)), np.empty((3, 3))
+    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     for i in range(motion.shape[0]):
-        vehicle_motion(model, motion[i], target, i, frames, tool, out[i])
+        read_aim(target, i, aim, rotation)
+        vehicle_motion(model, motion[i], aim, frames, tool, out[i])
     return out
 
 
@@ -87,7 +89,11 @@ def _vehicle_motions(model, motion, target):
 def plan_values(model, water, motion, target):
     """All values of `sample.sample_values` at the instants of motion (k, 3, d): (k, values)."""
     out = np.zeros((motion.shape[0], THRUST + water.shares.shape[0]))
+    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     for i in range(motion.shape[0]):
         thrust = water.shares.shape[0] > 0
-        sample_values(model, water, motion[i], target, i, True, thrust, out[i])
+        read_aim(target, i, aim, rotation)
+        sample_values(
+            model, water.shares, water.current, motion[i], aim, rotation, True, thrust, out[i]
+        )
     return out
