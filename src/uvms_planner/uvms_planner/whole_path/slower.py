@@ -12,7 +12,7 @@ from uvms_planner.whole_path.pieces import coarse_breaks
 from uvms_planner.whole_path.plan import PathPlan
 from uvms_planner.whole_path.solve import ROUGH, Progress, solve
 
-SLOWEST = 64.0  # factor beyond which the time is not what keeps a path from being followed
+SLOWEST = 30.0  # factor beyond which the time is not what keeps a path from being followed
 FINE_ENOUGH = 1.03  # ratio between a factor that is too fast and one that is not
 LITTLE = 1.02  # by which a factor grows while the full plan does not confirm it
 CONFIRMATIONS = 5
@@ -43,15 +43,13 @@ def slow_down(
 
     None where it cannot be followed at any speed.
     """
-    fast, slow = 1.0, 2.0
-    while not _possible(slowed(problem, slow)):
-        fast, slow = slow, 2.0 * slow
-        progress(0.1, f"{slow:g} times slower")
-        if slow > SLOWEST:
-            return None
+    fast, slow = 1.0, SLOWEST
+    progress(0.0, f"{slow:g} times slower")
+    if not _possible(slowed(problem, slow)):
+        return None
     while slow > FINE_ENOUGH * fast:
         middle = float(np.sqrt(fast * slow))
-        progress(0.5, f"{middle:.2f} times slower")
+        progress(0.25, f"{middle:.2f} times slower")
         if _possible(slowed(problem, middle)):
             slow = middle
         else:

@@ -71,8 +71,8 @@ class PathWindow:
         self._sites = greville(self._knots)
         basis = basis_at(self._knots, self._sites)
         fit = np.zeros((len(self._sites), len(self._sites)))
-        columns = basis.first[:, None] + np.arange(basis.values.shape[2])
-        np.put_along_axis(fit, columns, basis.values[:, 0], axis=1)
+        for row, first, values in zip(fit, basis.first, basis.values[:, 0], strict=True):
+            row[first : first + len(values)] = values
         self._fit = np.linalg.inv(fit)
         self._template: Discrete | None = None
 
