@@ -72,7 +72,7 @@ def _ranges(discrete: Discrete, config: SearchConfig) -> tuple[Array, Array]:
 
 
 def _first_generation(discrete: Discrete, rng, config: SearchConfig) -> Array:
-    """The posture held, and others: half take up one for good, half go on from one to the next."""
+    """Half take up a posture for good, half go on from one to the next."""
     lower, upper = _ranges(discrete, config)
     start, size = discrete.problem.start.value, len(lower)
     genes = rng.uniform(lower, upper, (config.population, config.postures, size))
@@ -81,7 +81,6 @@ def _first_generation(discrete: Discrete, rng, config: SearchConfig) -> Array:
     genes = start + share * (genes - start)
     half = config.population // 2
     genes[:half] = genes[:half, :1]
-    genes[0] = start
     return genes
 
 
