@@ -16,6 +16,7 @@ from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated
 from uvms_core.errors import UvmsError
 from uvms_core.plugin import PluginConfig
+from uvms_core.scene import Obstacles
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.locate import FILE_SUFFIXES, vehicle_path
 from uvms_core.vehicle.postures import STOWED
@@ -58,6 +59,11 @@ class Scenario(Config):
     duration_s: float = Field(gt=0.0, le=LONGEST_RUN_S, description="simulated time of the run, s")
     plant: PlantConfig = Field(
         PlantConfig(), description="the simulated vehicle: integration, start and current"
+    )
+    obstacles: Obstacles = Field(
+        (),
+        description="what stands in the water at rest, map_ned; the planner knows of it, and the"
+        " seabed is the vehicle file's `environment.seabed_depth_m`",
     )
     navigation: NavigationConfig = Field(
         NavigationConfig(),
@@ -127,6 +133,15 @@ class Scenario(Config):
             return own
         return own.model_copy(update={"gains": own.gains.model_copy(update=changed)})
 
+    @field_validator("planner")
+    @classmethod
+    def _knows_the_obstacles(cls, own: PlannerConfig, info: ValidationInfo) -> PlannerConfig:
+        """The planner knows what stands there, unless the scenario tries what it does not know."""
+        obstacles = info.data.get("obstacles")
+        if obstacles is None or "obstacles" in own.model_fields_set:
+            return own
+        return own.model_copy(update={"obstacles": obstacles})
+
     @field_validator("navigation")
     @classmethod
     def _starts_at_the_plant(cls, own: NavigationConfig, info: ValidationInfo) -> NavigationConfig:
@@ -144,7 +159,7 @@ class Scenario(Config):
             ScenarioError: there is no such vehicle, or the run cannot start with it.
         """
         vehicle = load_vehicle(vehicle_path(self.vehicle), self.vehicle_overrides)
-        check_start(vehicle, self.plant, self.planner, self.seed, self.events)
+        check_start(vehicle, self.plant, self.planner, self.seed, self.events, self.obstacles)
         return vehicle
 
     def for_vehicle(self, vehicle: Vehicle) -> "Scenario":

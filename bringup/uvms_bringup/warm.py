@@ -9,8 +9,12 @@ import sys
 import threading
 import time
 
+import numpy as np
+
 from uvms_bringup.scenario import known_scenarios, load_scenario
 from uvms_bringup.simulate import simulate
+from uvms_core.vehicle import Vehicle
+from uvms_dynamics.geometry import build_geometry, clearances_of_poses
 from uvms_dynamics.kernels.jit import kernel_names
 from uvms_dynamics.kernels.numba_internals.compilations import reported
 
@@ -75,7 +79,15 @@ def main() -> int:
             scenario = load_scenario(name, settings, duration_s=WARM_S)
             vehicle = scenario.load_vehicle()
             simulate(scenario, vehicle, scenario.goal.build(vehicle, scenario.plant))
+        _clearances_of_a_log(vehicle)
     return 0
+
+
+def _clearances_of_a_log(vehicle: Vehicle) -> None:
+    """The kernel of the summary, in which no simulation has a part."""
+    level = np.array([[0.0, 0.0, 0.0, 1.0]])
+    angles = np.zeros((1, vehicle.n_joints))
+    clearances_of_poses(build_geometry(vehicle), np.zeros((1, 3)), level, angles)
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ setup(
     ],
     extras_require={
         "panels": ["capytaine>=3.0", "scipy>=1.11", "trimesh>=4.0"],
-        "test": ["hypothesis", "packaging", "pin", "pytest", "uvms_dynamics[panels]"],
+        "test": ["coal", "hypothesis", "packaging", "pin", "pytest", "uvms_dynamics[panels]"],
     },
     zip_safe=False,
     entry_points={

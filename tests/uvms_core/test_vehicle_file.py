@@ -110,7 +110,7 @@ def test_unknown_override_lists_the_choices():
     assert refusal(hull__mas_kg=3.0) == (
         "override hull.mas_kg: hull has no 'mas_kg'; choose from spheroid, volume_m3, mass_kg,"
         " cg_m, cb_m, inertia_kg_m2, added_mass, attachments, linear_damping,"
-        " quadratic_damping, cross_terms, fins, speeds_m_s"
+        " quadratic_damping, cross_terms, fins, boxes, speeds_m_s"
     )
     assert refusal(wings=3.0) == (
         "override wings: the vehicle file has no 'wings'; choose from name, environment, hull,"

@@ -8,6 +8,7 @@ import numpy as np
 
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import check_log
+from uvms_analysis.clearance import NOTHING, least_clearances
 from uvms_analysis.counters import node_counters
 from uvms_analysis.errors import LogError, determine
 from uvms_analysis.happened import events_of, not_reached
@@ -102,6 +103,9 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
         "lockstep_timeouts": figures.of("lockstep_timeouts", lambda: run.lockstep_timeouts),
     }
     summary |= _precision(run, figures) | _effort(run, figures)
+    summary["clearance_m"] = figures.of(
+        "clearance_m", lambda: least_clearances(run), {**NOTHING, "planned": NOTHING}
+    )
     summary["stability"] = figures.of(
         "stability", lambda: stability(run, at_end), dict.fromkeys(NAMES)
     )

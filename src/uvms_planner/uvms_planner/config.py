@@ -7,6 +7,8 @@ from pydantic import Field
 from uvms_core import registry
 from uvms_core.config import Config
 from uvms_core.plugin import PluginConfig, Slot
+from uvms_core.scene import Obstacles
+from uvms_planner.clearance import ClearanceConfig
 from uvms_planner.interfaces import StepMethod
 
 FASTEST_M_S = 2.0
@@ -190,6 +192,12 @@ class PlannerConfig(PluginConfig):
         description="s, in which the tool joins a path that starts at an offset from it",
     )
     limits: LimitsConfig = Field(LimitsConfig(), description="limits of the planned motion")
+    clearance: ClearanceConfig = Field(
+        ClearanceConfig(), description="distances that the plan keeps"
+    )
+    obstacles: Obstacles = Field(
+        (), description="what the planner knows of; in a scenario its `obstacles` unless given"
+    )
     projection: ProjectionConfig = Field(
         ProjectionConfig(), description="precision, eq. (12), (17)"
     )

@@ -11,6 +11,7 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.errors import LogError, determine
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import force_figures, motion_figures, style
+from uvms_analysis.report.clearance_figure import clearance
 from uvms_analysis.report.page import Picture, write_page
 from uvms_analysis.report.scene import draw_scene, scene
 from uvms_analysis.report.stability_figure import stability
@@ -31,6 +32,10 @@ FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
     "joints": ("Joint angles, true and as planned.", motion_figures.joints),
     "attitude": ("Attitude of the vehicle, true and estimated.", motion_figures.attitude),
     "vehicle": ("Pose of the vehicle, true and as planned.", motion_figures.vehicle),
+    "clearance": (
+        "Distances of bodies that must not touch, true and as planned; those that come closest.",
+        clearance,
+    ),
     "self_disturbance": (
         "Self-disturbance: restoring and coupling wrench on the vehicle, body frame. "
         "Grey: as observed.",

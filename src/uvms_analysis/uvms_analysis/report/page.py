@@ -104,6 +104,8 @@ def _cards(summary: dict[str, Any]) -> str:
          of("navigation_error_m", "max", 1e3), "mm max"),
         ("roll", of("roll_deg", "max"), "° max", of("roll_deg", "rms"), "° rms"),
         ("pitch", of("pitch_deg", "max"), "° max", of("pitch_deg", "rms"), "° rms"),
+        ("least clearance", of("clearance_m", "min", 1e3), "mm",
+         (summary["clearance_m"] or {}).get("pair"), ""),
         ("self-disturbance", of("self_disturbance", "moment_rms_nm"), "N m rms",
          of("self_disturbance", "force_rms_n"), "N rms"),
         ("planner step", of("planner_step_ms", "p50"), "ms median",

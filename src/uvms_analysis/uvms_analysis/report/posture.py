@@ -1,5 +1,6 @@
 """A vehicle in one posture as shapes for the ray caster."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,10 +14,12 @@ from uvms_core.description.solids import (
     link_solids,
 )
 from uvms_core.description.tree import basis
+from uvms_core.scene import Obstacle
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.frames import Pose, arm_frames, compose, joint_frames
 from uvms_core.vehicle.hull import Hull
+from uvms_core.vehicle.outline import box_outline
 
 Colour = tuple[float, float, float]
 
@@ -24,6 +27,7 @@ HULL: Colour = (0.96, 0.74, 0.16)
 LINKS: tuple[Colour, Colour] = ((0.90, 0.42, 0.16), (0.66, 0.69, 0.73))
 JOINT: Colour = (0.24, 0.26, 0.30)
 THRUSTER: Colour = (0.22, 0.24, 0.28)
+OBSTACLE: Colour = (0.55, 0.50, 0.44)
 MOUTH_M = 0.006
 """How far the mouth of a tunnel thruster stands out of the hull."""
 JOINT_RADIUS = 1.12
@@ -76,6 +80,19 @@ def body_shapes(vehicle: Vehicle, posture: Posture) -> list[Shape]:
         centre = compose(posture.pose, joint)[0]
         shapes.append(ball(centre, JOINT_RADIUS * min(s.radius for s in solids), JOINT))
     return shapes
+
+
+def obstacle_shapes(obstacles: Iterable[Obstacle]) -> list[Shape]:
+    """Obstacles in `map_ned`."""
+    return [_obstacle(each) for each in obstacles]
+
+
+def _obstacle(obstacle: Obstacle) -> Shape:
+    if obstacle.sphere is not None:
+        return ball(np.array(obstacle.sphere.center_m), obstacle.sphere.radius_m, OBSTACLE)
+    assert obstacle.box is not None  # what the model checks
+    box = box_outline(obstacle.box)
+    return Shape("box", box.centre, box.rotation * box.half, OBSTACLE)
 
 
 def _hull(vehicle: Vehicle, pose: Pose) -> Shape:

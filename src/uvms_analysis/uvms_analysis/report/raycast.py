@@ -2,8 +2,9 @@
 
 matplotlib's 3-D axes sort whole patches by depth and shade them flat, so that an arm in front of a
 hull comes out wrong. Here every pixel has its own ray, met with the sphere x^2 + y^2 + z^2 = 1, the
-cylinder x^2 + y^2 = 1 or the cone x^2 + y^2 = (1 - z)^2 / 4, the latter two for |z| <= 1, in the
-shape's own coordinates. An affine map makes spheroids, links and arrows of them.
+box |x|, |y|, |z| <= 1, the cylinder x^2 + y^2 = 1 or the cone x^2 + y^2 = (1 - z)^2 / 4, the latter
+two for |z| <= 1, in the shape's own coordinates. An affine map makes spheroids, links and arrows of
+them.
 """
 
 from collections.abc import Callable, Sequence
@@ -33,9 +34,9 @@ _BALL = np.array(
 
 @dataclass(frozen=True)
 class Shape:
-    """A unit sphere, cylinder or cone, mapped by x = centre + axes @ x_unit."""
+    """A unit sphere, cylinder, cone or box, mapped by x = centre + axes @ x_unit."""
 
-    kind: str  # sphere, cylinder or cone
+    kind: str  # sphere, cylinder, cone or box
     centre: Array  # (3,) m
     axes: Array  # (3, 3) columns are the images of the unit axes, m
     colour: tuple[float, float, float]
@@ -209,6 +210,16 @@ def _cone(o: Array, d: Array) -> tuple[Array, Array]:
     return _nearer(side, normal, _end(-1.0, o, d), (0.0, 0.0, -1.0))
 
 
+def _box(o: Array, d: Array) -> tuple[Array, Array]:
+    """As `_sphere`, for six faces: the last of the three pairs of planes that a ray passes."""
+    across = np.where(np.abs(d) < _TINY, _TINY, d)
+    entries, exits = (-o - np.sign(across)) / across, (-o + np.sign(across)) / across
+    face = np.argmax(entries, axis=1)
+    enters = entries.max(axis=1)
+    seen = (enters > 0.0) & (enters <= exits.min(axis=1))
+    return np.where(seen, enters, np.inf), -np.sign(across) * np.eye(3)[face]
+
+
 def _roots(a: Array, b: Array, c: Array) -> tuple[Array, Array]:
     """Both solutions of a t^2 + 2 b t + c = 0, in order; infinite where there are none."""
     a = np.where(np.abs(a) < _TINY, _TINY, a)
@@ -248,4 +259,5 @@ _MEET: dict[str, Callable[[Array, Array], tuple[Array, Array]]] = {
     "sphere": _sphere,
     "cylinder": _cylinder,
     "cone": _cone,
+    "box": _box,
 }

@@ -16,11 +16,12 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 from uvms_analysis.analysis import Analysis
+from uvms_analysis.clearance import run_obstacles
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import style
 from uvms_analysis.report.arrows import Arrows, force_arrows
-from uvms_analysis.report.posture import Posture, ball, body_shapes, rod
+from uvms_analysis.report.posture import Posture, ball, body_shapes, obstacle_shapes, rod
 from uvms_analysis.report.raycast import (
     Camera,
     Layer,
@@ -52,6 +53,8 @@ SMOOTH = 2
 """Pixels are computed so many times finer along each side, for smooth edges."""
 GHOST = 0.32
 """Opacity of the postures beside the solid one."""
+BEHIND = 0.6
+"""Opacity of obstacles, which are drawn behind all else so that they hide nothing."""
 POSTURES = 3
 TUBE = 0.0045
 """Radius of the tool's path, as a part of the size of what is in view."""
@@ -114,7 +117,8 @@ def scene(
     figure = Figure(figsize=(SIZE[0] / DOTS_PER_INCH, SIZE[1] / DOTS_PER_INCH))
     axes = figure.add_axes((0.0, 0.0, 1.0, 1.0))
     solid = [*bodies[-1], *tube, *arrows.shapes]
-    layers = [render(shapes, camera, LIGHT, GHOST) for shapes in bodies[:-1]]
+    layers = [render(obstacle_shapes(run_obstacles(run.log)), camera, LIGHT, BEHIND)]
+    layers += [render(shapes, camera, LIGHT, GHOST) for shapes in bodies[:-1]]
     layers.append(render(solid, camera, LIGHT))
     image = shrink(blend(layers, _background(camera.size)), SMOOTH)
     axes.imshow(image, extent=(0, SIZE[0], SIZE[1], 0))

@@ -5,6 +5,7 @@ from typing import Annotated, Any
 from pydantic import Field, model_validator
 
 from uvms_core.errors import ConfigError
+from uvms_core.vehicle.box import Capsule
 from uvms_core.vehicle.parts import (
     AddedMass,
     Inertia,
@@ -168,6 +169,12 @@ class Link(Part):
     )
     drag: Annotated[tuple[DragCylinder, ...], or_keyword("cylinder")] = Field(
         default=CYLINDER, description="cylinders with cross-flow drag, or `cylinder`"
+    )
+    capsules: tuple[Capsule, ...] = Field(
+        default=(),
+        description="outline that keeps clear of hull, arm and obstacles, link frame; none: the"
+        " capsule around the cylinder or each drag cylinder, without one that along the link's"
+        " joints, of its volume",
     )
 
 

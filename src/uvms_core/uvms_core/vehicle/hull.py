@@ -4,6 +4,7 @@ from typing import Annotated, Any
 
 from pydantic import Field, field_validator
 
+from uvms_core.vehicle.box import Box
 from uvms_core.vehicle.damping import CrossTerms, Damping
 from uvms_core.vehicle.fins import Fin
 from uvms_core.vehicle.parts import (
@@ -99,6 +100,11 @@ class Hull(Part):
         " there are none",
     )
     fins: tuple[Fin, ...] = Field(default=(), description="rudders, stern planes and wings")
+    boxes: tuple[Box, ...] = Field(
+        default=(),
+        description="outline that arm and obstacles keep clear of, body frame; none: the spheroid,"
+        " without one the cuboid of the hull's inertia. Fins are added as balls",
+    )
     speeds_m_s: tuple[float, float] = Field(
         default=(0.0, 3.0),
         description="least and greatest surge speed, m/s, between which damping and cross_terms"

@@ -18,13 +18,8 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle.arm import Arm, Link
-from uvms_core.vehicle.frames import (
-    compose,
-    distal_pose,
-    mounting_pose,
-    placement_pose,
-)
 from uvms_core.vehicle.hull import Hull
+from uvms_core.vehicle.outline import link_line
 from uvms_core.vehicle.vehicle import Vehicle
 
 ELLIPSOID = math.sqrt(5.0)
@@ -110,7 +105,7 @@ def link_extent(arm: Arm, number: int) -> LinkExtent:
         half = 0.5 * shape.length_m * np.array(shape.axis)
         center = np.array(shape.center_m)
         return LinkExtent(np.array([center - half, center + half]), shape.radius_m, "the cylinder")
-    line = _line(arm, number)
+    line = link_line(arm, number)
     length = float(np.linalg.norm(np.diff(line, axis=0), axis=1).sum())
     reach = max(length, sphere_radius(link.volume_m3), _gyration_reach(link))
     return LinkExtent(line, reach, "joints, volume and inertia")
@@ -119,16 +114,6 @@ def link_extent(arm: Arm, number: int) -> LinkExtent:
 def _gyration_reach(link: Link) -> float:
     inertia = np.array(link.inertia_kg_m2)
     return ELLIPSOID * float(radii_of_gyration(link.mass_kg, inertia).max())
-
-
-def _line(arm: Arm, number: int) -> Array:
-    """The link's own joint, its frame, and the next joint or the tool, in its frame."""
-    position, rotation = distal_pose(arm.joints[number])
-    if number + 1 < len(arm.joints):
-        after = placement_pose(arm.joints[number + 1])[0]
-    else:
-        after = compose((np.zeros(3), np.eye(3)), mounting_pose(arm.tool))[0]
-    return np.array([-rotation.T @ position, np.zeros(3), after])
 
 
 def _distance(point: Array, start: Array, end: Array) -> float:
