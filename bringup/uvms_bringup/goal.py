@@ -63,9 +63,7 @@ class JointMotionSpec(Config):
 class Goal(Config):
     """What the planner is asked for: a path of the end effector, a joint motion, or nothing."""
 
-    path: PathSpec | None = Field(
-        None, description="path of the end effector, relative to where it starts"
-    )
+    path: PathSpec | None = Field(None, description="path of the end effector")
     path_made_for: str | None = Field(
         None,
         description="vehicle (name or file) that the path's sizes were chosen for: with another"
@@ -77,18 +75,27 @@ class Goal(Config):
     def _one_of_them(self) -> "Goal":
         if self.path is not None and self.joints is not None:
             raise ValueError("a goal has `path` or `joints`, not both")
+        if self.path is not None and self.path.absolute and self.path_made_for is not None:
+            raise ValueError(
+                f"path_made_for: a path in the frame {self.path.frame} is absolute and cannot be"
+                " scaled; leave it out"
+            )
         return self
 
     def build(self, vehicle: Vehicle, plant: PlantConfig) -> PathGoal | JointGoal | None:
         """The goal of a run of this vehicle that starts as `plant` says.
 
         Raises:
-            ScenarioError: the joint motion does not fit the vehicle.
+            ScenarioError: the path cannot begin there, or the joint motion does not fit the
+                vehicle.
             VehicleFileError: there is no vehicle `path_made_for`.
         """
         own = self.for_vehicle(vehicle, plant)
         if own.path is not None:
-            return own.path.goal(*start_of_end_effector(vehicle, plant))
+            try:
+                return own.path.goal(*start_of_end_effector(vehicle, plant))
+            except ValueError as fault:
+                raise ScenarioError(f"goal.path: {fault}") from fault
         if own.joints is not None:
             positions = np.deg2rad(np.array(own.joints.positions_deg))
             return JointGoal(np.array(own.joints.times_s), positions)

@@ -7,7 +7,9 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from uvms_core import path_nodes
+from uvms_core.errors import SignalError
 from uvms_core.path_nodes import Ends
+from uvms_core.pointing import Directions, normalized
 from uvms_core.rotation_vectors import angular_motion, vector_motion
 from uvms_core.signals import Array, PathGoal
 
@@ -63,6 +65,11 @@ class EndEffectorPath:
         self._times = times
         self._position = _position_curve(times, np.array(goal.positions, dtype=float))
         self._turn = _Turn(times, goal.orientations) if len(goal.orientations) else None
+        self.tool_axis: Array | None = np.array(goal.tool_axis) if len(goal.tool_axis) else None
+        """(3,) unit vector in the tool's axes that is to point along `directions`; None: none."""
+        self._pointing = None
+        if self.tool_axis is not None:
+            self._pointing = _position_curve(times, np.array(goal.axis_directions, dtype=float))
 
     @property
     def duration(self) -> float:
@@ -83,6 +90,15 @@ class EndEffectorPath:
         if self._turn is None:
             return PathSamples(*linear, None, None, None)
         return PathSamples(*linear, *self._turn.motion(inside))
+
+    def directions(self, times: Array) -> Directions:
+        """Where `tool_axis` is to point at `times` (k,) s; between the points as smooth as they.
+
+        Directions that follow each other are less than a right angle apart.
+        """
+        if self._pointing is None:
+            raise SignalError("the path has no tool_axis, and so no directions for it")
+        return normalized(*self._pointing.motion(np.clip(times, 0.0, self.duration)))
 
     def sample(self, time: float) -> PathSample:
         """Position (3,), velocity (3,), quaternion (4,) and angular velocity (3,) at `time` s."""

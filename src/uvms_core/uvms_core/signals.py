@@ -11,7 +11,7 @@ floats must be finite, and plain arrays are checked only on the way from a messa
 of samples, which no part of the system reads: the vehicle file has the sensors' noise).
 """
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Annotated
 
 import numpy as np
@@ -189,6 +189,10 @@ def _nothing() -> Array:
     return np.empty(0)
 
 
+def _no_directions() -> Array:
+    return np.empty((0, 3))
+
+
 @dataclass(frozen=True)
 class DisturbanceBudget:
     """What acts on the vehicle besides the thrusters, each part once, and what explains it."""
@@ -296,6 +300,16 @@ class PathGoal:
     times: Array  # (k,) s after the start, increasing, from 0
     positions: Array  # (k, 3) m, map_ned
     orientations: Array  # (k, 4) tool to map_ned, or (0, 4) for none
+    tool_axis: Array = field(default_factory=_nothing)
+    """(3,) unit vector in the tool's axes that is to point along `axis_directions`; (0,): none."""
+    axis_directions: Array = field(default_factory=_no_directions)
+    """(k, 3) unit vectors in map_ned; (0, 3) without `tool_axis`."""
+    time_scale_max: float = 1.0
+    """How many times as long the path may take where it is too fast; 1: as long as it says."""
+
+    def slowed(self, factor: float) -> "PathGoal":
+        """The same way in `factor` times the time, at a `factor`-th of the speed everywhere."""
+        return replace(self, times=self.times * factor)
 
 
 @dataclass(frozen=True)

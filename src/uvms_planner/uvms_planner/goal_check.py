@@ -52,6 +52,36 @@ def check_path_goal(goal: PathGoal) -> None:
             raise GoalRejected(
                 f"path: orientations[{row}] has norm {norms[row]:.4g}, must be a unit quaternion"
             )
+    _check_pointing(goal)
+    if not 1.0 <= goal.time_scale_max < np.inf:
+        raise GoalRejected(f"path: time_scale_max is {goal.time_scale_max:g}, must be >= 1")
+
+
+def _check_pointing(goal: PathGoal) -> None:
+    """The tool's axis and where it points, if it is to point anywhere."""
+    axis, directions = np.asarray(goal.tool_axis), np.asarray(goal.axis_directions)
+    wanted = ((3,), (len(goal.times), 3)) if axis.size else ((0,), (0, 3))
+    if (axis.shape, directions.shape) != wanted:
+        raise GoalRejected(
+            f"path: tool_axis has shape {axis.shape} and axis_directions {directions.shape}; needed"
+            f" are (3,) and ({len(goal.times)}, 3), or (0,) and (0, 3) for none"
+        )
+    if not axis.size:
+        return
+    if len(goal.orientations):
+        raise GoalRejected("path: it has orientations and a tool_axis; leave out one of them")
+    for name, rows in (("tool_axis", axis[None]), ("axis_directions", directions)):
+        squares = np.sum(rows**2, axis=1)
+        row = int(np.argmax(np.where(np.isfinite(squares), np.abs(squares - 1.0), np.inf)))
+        if not is_unit(squares[row]):
+            raise GoalRejected(f"path: {name}[{row}] = {rows[row]} is no unit vector")
+    cosines = np.sum(directions[1:] * directions[:-1], axis=1)
+    if np.any(cosines <= 0.0):
+        row = int(np.argmax(cosines <= 0.0)) + 1
+        raise GoalRejected(
+            f"path: axis_directions[{row}] is a right angle or more from the one before it; give"
+            " points in between"
+        )
 
 
 def _check_shapes(times: Array, positions: Array, orientations: Array) -> None:
@@ -76,6 +106,9 @@ def check_start(goal: PathGoal, position: Array, quaternion: Array, config: Plan
             f"path: its first point is {gap:.4g} m from the end effector, allowed"
             f" {config.start_tolerance_m:g} m; the end effector is at ({_numbers(position)}) m"
         )
+    if len(goal.tool_axis):
+        axis = quat_to_matrix(quaternion) @ goal.tool_axis
+        _check_start_of_axis(axis, goal.axis_directions[0], config)
     if not len(goal.orientations):
         return
     turn = _angle_between(goal.orientations[0], quaternion)
@@ -87,14 +120,28 @@ def check_start(goal: PathGoal, position: Array, quaternion: Array, config: Plan
         )
 
 
+def _check_start_of_axis(axis: Array, wanted: Array, config: PlannerConfig) -> None:
+    off = float(np.arctan2(np.linalg.norm(np.cross(axis, wanted)), axis @ wanted))
+    if off > np.deg2rad(config.start_tolerance_deg):
+        raise GoalRejected(
+            f"path: tool_axis points ({_numbers(axis)}), {np.rad2deg(off):.4g} deg from its first"
+            f" direction, allowed {config.start_tolerance_deg:g} deg"
+        )
+
+
 def check_reachable(
     path: EndEffectorPath | JoinedPath, solver: StepSolver, configuration: Array, step: float
 ) -> None:
     """Raise GoalRejected, with the time, if vehicle and arm cannot follow the path.
 
     The path is followed with the projection alone, from `configuration` (m,), within the rate and
-    joint limits of every planner step.
+    joint limits of every planner step. An axis of the tool that is to point somewhere is nothing
+    that a planner which goes step by step can keep.
     """
+    if path.tool_axis is not None:
+        raise GoalRejected(
+            "path: this method follows no tool_axis; give whole orientations, or leave them free"
+        )
     count = max(1, int(np.ceil(path.duration / step)))
     times = np.minimum(np.arange(1, count + 1) * step, path.duration)
     targets = [path.sample(float(time)) for time in times]

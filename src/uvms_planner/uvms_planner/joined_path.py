@@ -5,6 +5,7 @@ from numpy.linalg import norm
 from scipy.spatial.transform import Rotation
 
 from uvms_core.end_effector_path import EndEffectorPath, PathSample, PathSamples
+from uvms_core.pointing import Directions
 from uvms_core.signals import Array
 
 NEGLIGIBLE = 1e-7  # m or rad between the tool and the beginning of a path
@@ -25,7 +26,12 @@ class JoinedPath:
         if start.quaternion is not None:
             first = Rotation.from_quat(start.quaternion)
             self._turn = (Rotation.from_quat(quaternion) * first.inv()).as_rotvec()
-        self._begins_on_path = bool(max(norm(self._gap), norm(self._turn)) < NEGLIGIBLE)
+        self._swing = np.zeros(3)
+        if path.tool_axis is not None:
+            axis = Rotation.from_quat(quaternion).apply(path.tool_axis)
+            self._swing = _turn_between(path.directions(np.zeros(1)).direction[0], axis)
+        gaps = norm(self._gap), norm(self._turn), norm(self._swing)
+        self._begins_on_path = bool(max(gaps) < NEGLIGIBLE)
 
     @property
     def duration(self) -> float:
@@ -36,6 +42,11 @@ class JoinedPath:
     def oriented(self) -> bool:
         """Whether the path prescribes the orientation, too."""
         return self._path.oriented
+
+    @property
+    def tool_axis(self) -> Array | None:
+        """As of EndEffectorPath."""
+        return self._path.tool_axis
 
     @property
     def goal(self) -> EndEffectorPath:
@@ -68,6 +79,20 @@ class JoinedPath:
         quaternion = (off * Rotation.from_quat(on_path.quaternion)).as_quat()
         return PathSamples(position, velocity, acceleration, quaternion, turning + omega, alpha)
 
+    def directions(self, times: Array) -> Directions:
+        """As of EndEffectorPath: where `tool_axis` is to point."""
+        on_path = self._path.directions(times)
+        share, rate, bend = (part[:, None] for part in self._fading(times))
+        off, turning, bending = (
+            Rotation.from_rotvec(share * self._swing),
+            rate * self._swing,
+            bend * self._swing,
+        )
+        direction, own = off.apply(on_path.direction), off.apply(on_path.rate)
+        swept = np.cross(turning, direction)
+        acceleration = np.cross(bending, direction) + np.cross(turning, swept + 2 * own)
+        return Directions(direction, swept + own, acceleration + off.apply(on_path.acceleration))
+
     def positions(self, times: Array) -> Array:
         """Positions (k, 3) at `times` (k,) s."""
         return self.samples(times).position
@@ -81,3 +106,12 @@ class JoinedPath:
         left = 1 - u**3 * (10 - 15 * u + 6 * u**2)
         rate = -30 * (u * (1 - u)) ** 2 / self._approach
         return left, rate, -60 * u * (1 - u) * (1 - 2 * u) / self._approach**2
+
+
+def _turn_between(first: Array, second: Array) -> Array:
+    """Rotation vector (3,) of the shortest turn from a unit vector to another, less than half."""
+    normal = np.cross(first, second)
+    sine = float(norm(normal))
+    if sine == 0.0:
+        return np.zeros(3)
+    return np.arctan2(sine, first @ second) / sine * normal

@@ -11,13 +11,14 @@ from typing import Any
 import numpy as np
 
 from uvms_core import topics
-from uvms_core.description.tree import MAP_FRAME, R_MAP_MAP_NED, Branch, tree
+from uvms_core.description.tree import Branch, tree
 from uvms_core.description.urdf import urdf_text
 from uvms_core.messages import parts, to_message
 from uvms_core.rotations import matrix_to_quat
 from uvms_core.signals import JointStates, Odometry
 from uvms_core.vehicle.frames import Pose
 from uvms_core.vehicle.vehicle import Vehicle
+from uvms_core.world_frames import MAP_FRAME, R_MAP_MAP_NED
 
 Plain = dict[str, Any]
 

@@ -30,16 +30,14 @@ from uvms_core.vehicle.frames import (
     mounting_pose,
 )
 from uvms_core.vehicle.vehicle import Vehicle
+from uvms_core.world_frames import MAP_FRAME
 
-MAP_FRAME = "map"
-"""REP-105: east, north, up; origin as `map_ned`."""
 REP103_BODY_FRAME = "base_link"
 """REP-103: forward, port, up; origin as `base_link_fsd`."""
 HULL_FRAME = "hull"
 """The hull's body: the root of a URDF should have no mass."""
 TOOL_FRAME = "tool"
 
-R_MAP_MAP_NED = np.array([[0.0, 1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, -1.0]])
 R_FSD_FLU = np.diag([1.0, -1.0, -1.0])
 """Forward-left-up axes in forward-starboard-down ones (its own inverse)."""
 

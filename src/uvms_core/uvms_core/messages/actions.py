@@ -8,8 +8,10 @@ import numpy as np
 from uvms_core.errors import SignalError
 from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
-from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core.rotations import matrix_to_quat, quat_multiply, quat_to_matrix
+from uvms_core.signals import Array, JointGoal, PathGoal, to_nanoseconds
 from uvms_core.topic import WORLD_FRAME, Action
+from uvms_core.world_frames import MAP_FRAME, R_MAP_MAP_NED
 
 
 def _stampless(frame: str) -> Plain:
@@ -27,15 +29,15 @@ def path_to(action: Action, goal: PathGoal, names: Sequence[str]) -> Plain:
         "time_from_start": [_duration(time) for time in goal.times.tolist()],
         "positions": [parts.vector(position) for position in goal.positions],
         "orientations": [parts.quaternion(attitude) for attitude in goal.orientations],
+        "tool_axis": parts.vector(goal.tool_axis if len(goal.tool_axis) else np.zeros(3)),
+        "axis_directions": [parts.vector(direction) for direction in goal.axis_directions],
+        "max_time_scale": float(goal.time_scale_max),
     }
 
 
 def path_from(action: Action, msg: Any, names: Sequence[str]) -> PathGoal:
     """From the goal of FollowEndEffectorPath: as many times as positions, from 0."""
-    if msg.header.frame_id != WORLD_FRAME:
-        raise SignalError(
-            f"{action.name}: header.frame_id is {msg.header.frame_id!r}; it must be {WORLD_FRAME!r}"
-        )
+    rotate = _to_map_ned(action, msg.header.frame_id)
     count = _count(action, "positions", msg.positions)
     _check_length(action, "time_from_start", msg.time_from_start, (count,))
     _check_length(action, "orientations", msg.orientations, (0, count))
@@ -49,7 +51,63 @@ def path_from(action: Action, msg: Any, names: Sequence[str]) -> PathGoal:
         fields.quaternion(action, f"orientations[{k}]", value)
         for k, value in enumerate(msg.orientations)
     ]
-    return PathGoal(times, np.array(positions), np.array(orientations).reshape(-1, 4))
+    attitudes = np.array(orientations).reshape(-1, 4)
+    if rotate is not None:
+        attitudes = np.array([quat_multiply(rotate, attitude) for attitude in attitudes])
+    axis, directions = _pointing(action, msg, count)
+    return PathGoal(
+        times,
+        _rotated(rotate, np.array(positions)),
+        attitudes.reshape(-1, 4),
+        axis,
+        _rotated(rotate, directions),
+        _time_scale(action, msg.max_time_scale),
+    )
+
+
+def _to_map_ned(action: Action, frame: str) -> Array | None:
+    """Quaternion (4,) of a goal's frame in map_ned; None where it is map_ned."""
+    if frame == WORLD_FRAME:
+        return None
+    if frame == MAP_FRAME:
+        return matrix_to_quat(R_MAP_MAP_NED.T)
+    raise SignalError(
+        f"{action.name}: header.frame_id is {frame!r}; it must be {WORLD_FRAME!r} or {MAP_FRAME!r}"
+    )
+
+
+def _rotated(rotate: Array | None, vectors: Array) -> Array:
+    """Vectors (k, 3) of the goal's frame in map_ned; exact, since its axes are those of map_ned."""
+    if rotate is None or not len(vectors):
+        return vectors
+    return vectors @ np.round(quat_to_matrix(rotate)).T
+
+
+def _pointing(action: Action, msg: Any, count: int) -> tuple[Array, Array]:
+    """The tool's axis (3,) that is to point and its directions (k, 3), unit; or (0,) and (0, 3)."""
+    axis = fields.vector(action, "tool_axis", msg.tool_axis)
+    if not axis.any():
+        _check_length(action, "axis_directions", msg.axis_directions, (0,))
+        return np.empty(0), np.empty((0, 3))
+    _check_length(action, "axis_directions", msg.axis_directions, (count,))
+    _check_length(action, "orientations", msg.orientations, (0,))
+    rows = [
+        fields.vector(action, f"axis_directions[{k}]", value)
+        for k, value in enumerate(msg.axis_directions)
+    ]
+    directions = np.array(rows)
+    lengths = np.linalg.norm(directions, axis=1, keepdims=True)
+    if not lengths.all():
+        raise SignalError(f"{action.name}: axis_directions[{int(np.argmin(lengths))}] is zero")
+    return axis / np.linalg.norm(axis), directions / lengths
+
+
+def _time_scale(action: Action, value: float) -> float:
+    """How many times as long a path may take; 0, which a client leaves it at, is 1."""
+    scale = fields.number(action, "max_time_scale", value) or 1.0
+    if scale < 1.0:
+        raise SignalError(f"{action.name}: max_time_scale is {scale:g}; it must be >= 1, or 0")
+    return scale
 
 
 def joints_to(action: Action, goal: JointGoal, names: Sequence[str]) -> Plain:

@@ -7,8 +7,10 @@ from pydantic import Field, model_validator
 
 from uvms_core.signals import Array
 from uvms_planner.paths.shape import (
+    AT_ORIGIN,
     FARTHEST_M,
     LONGEST_PATH_S,
+    Begin,
     Duration,
     Length,
     Offset,
@@ -18,8 +20,10 @@ from uvms_planner.paths.shape import (
 from uvms_planner.paths.timing import EasedShape
 
 AXES = {"X": np.eye(3)[0], "Y": np.eye(3)[1], "Z": np.eye(3)[2]}
-"""Of map_ned: north, east, down."""
+"""Of the path's frame: north, east, down, or of `map` east, north, up."""
 MOST_TURNS = 1000.0
+POINTS_A_TURN = 64
+"""With which the acceleration of a turn is right within a thousandth."""
 LEAST_SINE = 1e-3
 """Of the angle between normal and direction: below it the plane of the circle is not defined."""
 
@@ -33,18 +37,19 @@ class Circle(EasedShape):
     radius_m: float = Field(gt=0, le=FARTHEST_M, description="m, radius")
     plane: Literal["XOZ", "YOZ", "XOY"] | None = Field(
         None,
-        description="plane of map_ned in which the circle lies; it goes from the plane's first axis"
-        " towards its second. none: given by `normal`",
+        description="plane of the frame's axes in which the circle lies, those of map_ned unless"
+        " `frame` is map; it goes from the plane's first axis towards its second. none: given by"
+        " `normal`",
     )
     normal: Offset | None = Field(
         None,
-        description="normal of the circle's plane, map_ned axes, of any length; it goes round it"
-        " as a right-handed screw does. Instead of `plane`",
+        description="normal of the circle's plane, in the frame's axes, of any length; it goes"
+        " round it as a right-handed screw does. Instead of `plane`",
     )
     towards: Offset | None = Field(
         None,
-        description="direction from the start to the circle's centre, map_ned axes (its part in the"
-        " plane counts); none: the plane's first axis, or with `normal` the axis X, Y or Z that is"
+        description="direction from the start to the circle's centre, in the frame's axes (its part"
+        " in the plane counts); none: the plane's first axis, or with `normal` the axis X, Y or Z that is"
         " most nearly in the plane",
     )
     turns: float = Field(
@@ -79,6 +84,11 @@ class Circle(EasedShape):
         """That all turns take, s."""
         return self.duration_s or abs(self.turns) * (self.period_s or 0.0)
 
+    @property
+    def wanted_spacing_s(self) -> float:
+        """Where turns follow each other fast, the mean turn has `POINTS_A_TURN`."""
+        return min(super().wanted_spacing_s, self.seconds / abs(self.turns) / POINTS_A_TURN)
+
     def axes(self) -> tuple[Array, Array, Array]:
         """Unit vectors (3,): from the start to the centre, that turned by 90 degrees, the normal.
 
@@ -107,13 +117,13 @@ class Circle(EasedShape):
             first = np.eye(3)[int(np.argmin(np.abs(normal)))]
         return normal, first if self.towards is None else np.array(self.towards, dtype=float)
 
-    def points(self, spacing: float) -> PathPoints:
-        """Offset r (1 - cos a) e1 - r sin a e2 at the angle a; e1 points to the centre."""
+    def points(self, spacing: float, begin: Begin = AT_ORIGIN) -> PathPoints:
+        """From the start r (1 - cos a) e1 - r sin a e2 at the angle a; e1 points to the centre."""
         times = even_times(self.seconds, spacing)
         to_centre, across, _ = self.axes()
         angle = 2 * np.pi * self.turns * self.progress(times)[:, None]
         offsets = (1 - np.cos(angle)) * to_centre - np.sin(angle) * across
-        return PathPoints(times, self.radius_m * offsets)
+        return PathPoints(times, begin.position + self.radius_m * offsets)
 
     def scaled(self, factor: float) -> Self:
         """The circle with its radius times `factor`."""
@@ -128,9 +138,9 @@ class Helix(Circle):
         " XOZ is west, that of YOZ north, that of XOY down"
     )
 
-    def points(self, spacing: float) -> PathPoints:
+    def points(self, spacing: float, begin: Begin = AT_ORIGIN) -> PathPoints:
         """The circle's points, moved along the normal in proportion to the angle."""
-        times, offsets, _ = super().points(spacing)
+        times, offsets, _ = super().points(spacing, begin)
         way = abs(self.turns) * self.progress(times)[:, None]
         return PathPoints(times, offsets + self.advance_m * way * self.axes()[2])
 

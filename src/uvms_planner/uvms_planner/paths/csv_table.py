@@ -10,7 +10,14 @@ from scipy.spatial.transform import Rotation
 
 from uvms_core.checks import is_unit
 from uvms_core.signals import Array
-from uvms_planner.paths.shape import FARTHEST_M, LONGEST_PATH_S, PathPoints, PathShape
+from uvms_planner.paths.shape import (
+    AT_ORIGIN,
+    FARTHEST_M,
+    LONGEST_PATH_S,
+    Begin,
+    PathPoints,
+    PathShape,
+)
 from uvms_planner.paths.spline import dense_times, through, turned
 
 POSITION = ("t", "x", "y", "z")
@@ -22,8 +29,8 @@ MOST_ROWS = 100_000
 class CsvPath(PathShape):
     """A table with a header line and the columns t, x, y, z, and qx, qy, qz, qw where wanted.
 
-    Seconds from 0; metres from the end effector's start, map_ned axes; the tool's orientation from
-    its own at the start. Between the rows the path is as smooth as through `waypoints`.
+    Seconds from 0; metres and the tool's orientation in the path's frame: from its pose at the
+    start, or absolute. Between the rows the path is as smooth as through `waypoints`.
     """
 
     file: str = Field(
@@ -53,7 +60,7 @@ class CsvPath(PathShape):
         """Whether the table has orientations."""
         return read_table(Path(self.file)).shape[1] > len(POSITION)
 
-    def points(self, spacing: float) -> PathPoints:
+    def points(self, spacing: float, begin: Begin = AT_ORIGIN) -> PathPoints:
         """The rows, exactly, and points in between where they are more than `spacing` apart."""
         table = read_table(Path(self.file))
         times = table[:, 0]
@@ -138,7 +145,7 @@ def _check_values(file: Path, table: Array) -> None:
         row, column = np.argwhere(~good)[0]
         raise ValueError(
             f"{file}: {POSITION[1 + column]} = {table[row, 1 + column]:g} m at t ="
-            f" {table[row, 0]:g} s; must be within {FARTHEST_M:g} m of the start"
+            f" {table[row, 0]:g} s; must be within {FARTHEST_M:g} m of the origin"
         )
     for row, norm in enumerate(np.linalg.norm(table[:, 4:8], axis=1) if table.shape[1] > 4 else ()):
         if not is_unit(norm**2):

@@ -7,7 +7,15 @@ from pydantic import Field
 
 from uvms_core.config import Config
 from uvms_core.signals import Array
-from uvms_planner.paths.shape import Duration, Offset, PathPoints, PathShape, even_times
+from uvms_planner.paths.shape import (
+    AT_ORIGIN,
+    Begin,
+    Duration,
+    Offset,
+    PathPoints,
+    PathShape,
+    even_times,
+)
 from uvms_planner.paths.timing import quintic
 
 
@@ -15,9 +23,7 @@ class PathPhase(Config):
     """One phase of a path, from rest to rest."""
 
     duration_s: Duration = Field(300.0, description="s, time that it takes")
-    to_m: Offset = Field(
-        (0.0, 0.0, 0.0), description="m, where it ends, from the start point, map_ned axes"
-    )
+    to_m: Offset = Field((0.0, 0.0, 0.0), description="m, where it ends, in the path's frame")
     bulge_m: Offset = Field(
         (0.0, 0.0, 0.0), description="m, offset of the halfway point from the straight line"
     )
@@ -26,7 +32,7 @@ class PathPhase(Config):
 class PhasePath(PathShape):
     """Phases one after the other."""
 
-    usual_spacing_s: ClassVar[float] = 1.0
+    longest_spacing_s: ClassVar[float] = 1.0
 
     phases: tuple[PathPhase, ...] = Field(min_length=1, description="the phases, in order")
 
@@ -35,9 +41,9 @@ class PhasePath(PathShape):
         """That all phases take, s."""
         return sum(phase.duration_s for phase in self.phases)
 
-    def points(self, spacing: float) -> PathPoints:
+    def points(self, spacing: float, begin: Begin = AT_ORIGIN) -> PathPoints:
         """Every phase at evenly spaced times, its end among them."""
-        times, offsets = [np.zeros(1)], [np.zeros((1, 3))]
+        times, offsets = [np.zeros(1)], [begin.position[None]]
         for phase in self.phases:
             inside = even_times(phase.duration_s, spacing)[1:]
             offsets.append(_phase_points(offsets[-1][-1], phase, inside))

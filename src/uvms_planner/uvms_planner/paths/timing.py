@@ -11,6 +11,11 @@ from uvms_planner.paths.shape import PathShape
 USUAL_SHARE = 0.25
 """Of the duration, in which a path gets up to speed: the greatest speed is then 4/3 of the mean."""
 
+POINTS_AN_EASE = 64
+"""With which the acceleration while it gets up to speed is right within half a percent."""
+MOST_POINTS = 10_000
+"""For a spacing below the longest: a message with more of them has megabytes."""
+
 
 class EasedShape(PathShape):
     """A path that gets up to speed smoothly, goes on at that speed, and stops as smoothly.
@@ -35,10 +40,25 @@ class EasedShape(PathShape):
             )
         return self
 
+    @property
+    def ease(self) -> float:
+        """In which it gets up to speed, s."""
+        return USUAL_SHARE * self.seconds if self.ease_s is None else self.ease_s
+
+    @property
+    def wanted_spacing_s(self) -> float:
+        """Seconds between points that show the path's shape."""
+        return self.ease / POINTS_AN_EASE
+
+    @property
+    def usual_spacing_s(self) -> float:
+        """Seconds between the points of the path, where none are asked for."""
+        shown = max(self.wanted_spacing_s, self.seconds / MOST_POINTS)
+        return min(self.longest_spacing_s, shown)
+
     def progress(self, times: Array) -> Array:
         """Share (k,) of the way that is done at `times` (k,) s, from 0 to 1."""
-        ease = USUAL_SHARE * self.seconds if self.ease_s is None else self.ease_s
-        return eased(times, self.seconds, ease)
+        return eased(times, self.seconds, self.ease)
 
 
 def eased(times: Array, duration: float, ease: float) -> Array:

@@ -7,7 +7,15 @@ from pydantic import Field, model_validator
 from scipy.spatial.transform import Rotation
 
 from uvms_core.signals import Array
-from uvms_planner.paths.shape import LONGEST_PATH_S, Duration, Offset, PathPoints, PathShape
+from uvms_planner.paths.shape import (
+    AT_ORIGIN,
+    LONGEST_PATH_S,
+    Begin,
+    Duration,
+    Offset,
+    PathPoints,
+    PathShape,
+)
 from uvms_planner.paths.spline import dense_times, through, turned
 from uvms_planner.paths.timing import quintic
 
@@ -25,7 +33,7 @@ class Waypoints(PathShape):
     points_m: tuple[Offset, ...] = Field(
         min_length=1,
         max_length=10_000,
-        description="m, the points after the start, each from the start, map_ned axes",
+        description="m, the points after the start, in the path's frame",
     )
     times_s: tuple[Duration, ...] | None = Field(
         None, description="s, when it passes each point, increasing; or give `speeds_m_s`"
@@ -37,8 +45,8 @@ class Waypoints(PathShape):
     )
     rpy_deg: tuple[tuple[Turn, Turn, Turn], ...] | None = Field(
         None,
-        description="deg, roll, pitch and yaw of the tool at each point, from its orientation at"
-        " the start; none: any orientation",
+        description="deg, roll, pitch and yaw of the tool at each point, in the path's frame: from"
+        " its orientation at the start, or absolute; none: any orientation",
     )
     stop: bool = Field(False, description="stop at each point, with straight lines in between")
 
@@ -51,7 +59,13 @@ class Waypoints(PathShape):
             own = getattr(self, name)
             if isinstance(own, tuple) and len(own) != len(self.points_m):
                 raise ValueError(f"{name}: {len(own)} values for {len(self.points_m)} points_m")
-        times = self._times()
+        if self.times_s is not None:  # no speeds need the start
+            self.check_from(AT_ORIGIN)
+        return self
+
+    def check_from(self, begin: Begin) -> None:
+        """Raise ValueError where a point takes no time, or all take too long."""
+        times = self._times(begin)
         standing = np.flatnonzero(np.diff(times) <= 0.0)
         if len(standing):
             raise ValueError(self._standing_still(int(standing[0]), times))
@@ -59,7 +73,6 @@ class Waypoints(PathShape):
             raise ValueError(
                 f"the path takes {times[-1]:g} s, may take at most {LONGEST_PATH_S:g} s"
             )
-        return self
 
     def _standing_still(self, row: int, times: Array) -> str:
         if self.times_s is not None:
@@ -71,39 +84,40 @@ class Waypoints(PathShape):
 
     @property
     def seconds(self) -> float:
-        """To the last point, s."""
-        return float(self._times()[-1])
+        """To the last point, s; by speeds, from the origin of its frame."""
+        return float(self._times(AT_ORIGIN)[-1])
 
     @property
     def oriented(self) -> bool:
         """Whether the points have orientations."""
         return self.rpy_deg is not None
 
-    def _offsets(self) -> Array:
+    def _offsets(self, begin: Begin) -> Array:
         """The start and the points (n + 1, 3)."""
-        return np.vstack([np.zeros(3), np.array(self.points_m, dtype=float)])
+        return np.vstack([begin.position, np.array(self.points_m, dtype=float)])
 
-    def _times(self) -> Array:
+    def _times(self, begin: Begin) -> Array:
         """When it is at the start and at each point (n + 1,), s."""
         if self.times_s is not None:
             return np.array([0.0, *self.times_s])
-        lengths = np.linalg.norm(np.diff(self._offsets(), axis=0), axis=1)
+        lengths = np.linalg.norm(np.diff(self._offsets(begin), axis=0), axis=1)
         return np.concatenate([[0.0], np.cumsum(lengths / np.array(self.speeds_m_s))])
 
-    def points(self, spacing: float) -> PathPoints:
+    def points(self, spacing: float, begin: Begin = AT_ORIGIN) -> PathPoints:
         """The curve at the points' own times and at times in between."""
-        times, offsets = self._times(), self._offsets()
+        times, offsets = self._times(begin), self._offsets(begin)
         wanted = dense_times(times, spacing)
         between = _straight if self.stop else through
         turns = None
         if self.rpy_deg is not None:
-            angles = np.vstack([np.zeros(3), np.array(self.rpy_deg, dtype=float)])
-            turns = turned(times, Rotation.from_euler("ZYX", angles[:, ::-1], degrees=True), wanted)
+            angles = np.array(self.rpy_deg, dtype=float)[:, ::-1]
+            own = Rotation.from_euler("ZYX", angles, degrees=True)
+            turns = turned(times, Rotation.concatenate([begin.rotation, own]), wanted)
         return PathPoints(wanted, between(times, offsets, wanted), turns)
 
     def scaled(self, factor: float) -> "Waypoints":
         """The points with their offsets times `factor`, passed at the same times."""
-        times = self._times()[1:]
+        times = self._times(AT_ORIGIN)[1:]
         points = tuple(tuple(factor * x for x in point) for point in self.points_m)
         return self.model_copy(
             update={"points_m": points, "times_s": tuple(times.tolist()), "speeds_m_s": None}
