@@ -13,6 +13,7 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.whole_path.barrier import linearised, penalty
 from uvms_planner.whole_path.sample import (
+    NEAR_M,
     THRUST,
     TURN,
     WRENCHES,
@@ -97,10 +98,13 @@ def _wished(wishes, motion, values):
 
 
 @inner
-def _one_sample(model, water, bounds, wishes, mu, rho, motion, aim, rotation, values):
+def _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, values):
     """The share of one sample in the cost, without its weight."""
-    thrust = values.shape[0] > THRUST
-    sample_values(model, water.shares, water.current, motion, aim, rotation, True, thrust, values)
+    thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
+    sample_values(
+        model, around.shares, around.current, around.shapes, around.margins,
+        motion, aim, rotation, True, thrust, close, values,
+    )  # fmt: skip
     total = _wished(wishes, motion, values)
     for k in range(WRENCHES):
         total += 0.5 * values[k] ** 2
@@ -148,7 +152,7 @@ def _row_slope(rows, r, coefficients, mu, rho, memory):
 
 
 @kernel
-def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients):
+def cost(model, around, grid, target, bounds, rows, wishes, mu, rho, coefficients):
     """F(c) for coefficients (K, d)."""
     motion = np.empty((3, coefficients.shape[1]))
     values = np.zeros(WRENCHES + bounds.lower.shape[0])
@@ -157,7 +161,7 @@ def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
         read_aim(target, i, aim, rotation)
-        one = _one_sample(model, water, bounds, wishes, mu, rho, motion, aim, rotation, values)
+        one = _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, values)
         total += grid.weights[i] * one
     for r in range(rows.first.shape[0]):
         total += _row_cost(rows, r, coefficients, mu, rho)
@@ -165,7 +169,7 @@ def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients
 
 
 @kernel
-def disturbance(model, water, grid, target, bounds, coefficients):
+def disturbance(model, around, grid, target, bounds, coefficients):
     """J: the integral of the squared wrenches."""
     motion = np.empty((3, coefficients.shape[1]))
     values = np.zeros(WRENCHES + bounds.lower.shape[0])
@@ -175,8 +179,9 @@ def disturbance(model, water, grid, target, bounds, coefficients):
         _posture(grid, coefficients, i, motion)
         read_aim(target, i, aim, rotation)
         sample_values(
-            model, water.shares, water.current, motion, aim, rotation, True, False, values
-        )
+            model, around.shares, around.current, around.shapes, around.margins,
+            motion, aim, rotation, True, False, False, values,
+        )  # fmt: skip
         for k in range(WRENCHES):
             total += grid.weights[i] * values[k] ** 2
     return total
@@ -255,10 +260,39 @@ def _spread(grid, i, matrix, vector, half, band, gradient):
                     )
 
 
+@inner
+def _near_a_limit(around, bounds, values):
+    """Whether a thruster's share is so great that its derivatives count."""
+    for k in range(THRUST, THRUST + around.shares.shape[0]):
+        if abs(values[k]) > NEAR * bounds.upper[k - WRENCHES]:
+            return True
+    return False
+
+
+@inner
+def _near_a_body(around, values):
+    """Whether a clearance is so small that its derivatives count."""
+    first = THRUST + around.shares.shape[0]
+    for k in range(around.margins.shape[0]):
+        if values[first + k] < around.margins[k] + NEAR_M:
+            return True
+    return False
+
+
+@inner
+def _forget(around, needed, near, jacobian):
+    """Clear the derivatives that were not taken."""
+    first = THRUST + around.shares.shape[0]
+    if not needed:
+        jacobian[THRUST:first] = 0.0
+    if not near:
+        jacobian[first:] = 0.0
+
+
 @kernel
 def linearise(
     model,
-    water,
+    around,
     grid,
     target,
     bounds,
@@ -286,27 +320,18 @@ def linearise(
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
         read_aim(target, i, aim, rotation)
-        thrust = size > THRUST
+        thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
         sample_values(
-            model, water.shares, water.current, motion, aim, rotation, True, thrust, values
-        )
-        needed = False
-        for k in range(THRUST, size):
-            needed = needed or abs(values[k]) > NEAR * bounds.upper[k - WRENCHES]
+            model, around.shares, around.current, around.shapes, around.margins,
+            motion, aim, rotation, True, thrust, close, values,
+        )  # fmt: skip
+        needed = _near_a_limit(around, bounds, values)
+        near = _near_a_body(around, values)
         sample_jacobian(
-            model,
-            water.shares,
-            water.current,
-            motion,
-            aim,
-            rotation,
-            needed,
-            values,
-            moved,
-            jacobian,
-        )
-        if thrust and not needed:
-            jacobian[THRUST:] = 0.0
+            model, around.shares, around.current, around.shapes, around.margins,
+            motion, aim, rotation, needed, near, values, moved, jacobian,
+        )  # fmt: skip
+        _forget(around, needed, near, jacobian)
         _local(
             bounds,
             wishes,

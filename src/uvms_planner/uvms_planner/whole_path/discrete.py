@@ -11,7 +11,7 @@ from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path import assembly
 from uvms_planner.whole_path.assembly import Bounds, Grid, Rows, Wishes
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import Target, Water
+from uvms_planner.whole_path.sample import Surroundings, Target
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.spline import (
     DEGREE,
@@ -36,7 +36,7 @@ class Discrete:
     times: Array  # (k,) s, of the samples
     grid: Grid
     target: Target
-    water: Water
+    around: Surroundings
     bounds: Bounds
     rows: Rows
     wishes: Wishes
@@ -49,7 +49,7 @@ class Discrete:
     def arguments(self):
         """The first arguments of the kernels."""
         return (
-            self.problem.model, self.water, self.grid, self.target, self.bounds, self.rows,
+            self.problem.model, self.around, self.grid, self.target, self.bounds, self.rows,
             self.wishes,
         )  # fmt: skip
 
@@ -72,7 +72,7 @@ class Discrete:
     def disturbance(self, coefficients: Array) -> float:
         """J on the samples of the quadrature."""
         return assembly.disturbance(
-            self.problem.model, self.water, self.grid, self.target, self.bounds, coefficients
+            self.problem.model, self.around, self.grid, self.target, self.bounds, coefficients
         )
 
     def complete(self, coefficients: Array) -> Array:
@@ -98,7 +98,7 @@ def discretise(
     numbers[:FIXED], numbers[-FIXED:] = -1, count - 2 * FIXED if problem.end is None else -1
     grid = Grid(basis.first, basis.values, weights, numbers.astype(np.int64))
     return Discrete(
-        problem, knots, times, grid, problem.target(times), problem.water,
+        problem, knots, times, grid, problem.target(times), problem.around,
         sampled_bounds(problem, tight), _rows(problem, knots, numbers), _wishes(problem),
     )  # fmt: skip
 

@@ -10,7 +10,7 @@ from uvms_core.end_effector_path import PathSamples
 from uvms_core.signals import Array
 from uvms_dynamics import Model
 from uvms_planner.limits import MotionLimits
-from uvms_planner.whole_path.sample import NO_WATER, Target, Water
+from uvms_planner.whole_path.sample import NO_SURROUNDINGS, Surroundings, Target
 
 
 class Path(Protocol):
@@ -67,7 +67,7 @@ class PathProblem:
     start: Posture
     limits: MotionLimits
     weights: CostWeights = field(default_factory=CostWeights)
-    water: Water = NO_WATER
+    around: Surroundings = NO_SURROUNDINGS
     end: Posture | None = None  # at which the plan ends; None: at rest, in any posture
     turn_tolerance: float = np.deg2rad(0.5)  # rad, from a prescribed orientation
 

@@ -54,7 +54,7 @@ class PathPlan:
     def values(self, times: Array) -> Array:
         """Wrenches, motion, attitude, turn and thrust at `times` (k,) s, as in `sample`."""
         return plan_values(
-            self.problem.model, self.problem.water, self.posture(times), self.problem.target(times)
+            self.problem.model, self.problem.around, self.posture(times), self.problem.target(times)
         )
 
     @cached_property
@@ -86,14 +86,16 @@ def _vehicle_motions(model, motion, target):
 
 
 @kernel
-def plan_values(model, water, motion, target):
+def plan_values(model, around, motion, target):
     """All values of `sample.sample_values` at the instants of motion (k, 3, d): (k, values)."""
-    out = np.zeros((motion.shape[0], THRUST + water.shares.shape[0]))
+    thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
+    size = THRUST + around.shares.shape[0] + around.margins.shape[0]
+    out = np.zeros((motion.shape[0], size))
     aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     for i in range(motion.shape[0]):
-        thrust = water.shares.shape[0] > 0
         read_aim(target, i, aim, rotation)
         sample_values(
-            model, water.shares, water.current, motion[i], aim, rotation, True, thrust, out[i]
-        )
+            model, around.shares, around.current, around.shapes, around.margins, motion[i], aim,
+            rotation, True, thrust, close, out[i],
+        )  # fmt: skip
     return out

@@ -11,6 +11,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics import coupling_wrench, inverse_dynamics, restoring_wrench
+from uvms_dynamics.kernels.clearance import clearance_work, clearances_into
 from uvms_dynamics.kernels.jit import inner, shared
 from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.problem import yaw_quaternion
@@ -20,7 +21,7 @@ WRENCHES = 12  # restoring and coupling wrench
 POSITION = WRENCHES  # of the vehicle, then its velocity and acceleration, world axes
 ATTITUDE = POSITION + 9  # roll and pitch that the vehicle takes up freely
 TURN = ATTITUDE + 2  # from the prescribed orientation of the tool to its own
-THRUST = TURN + 3  # share of each thruster's authority
+THRUST = TURN + 3  # share of each thruster's authority, then clearances
 STEP = 1e-6  # of a finite difference, rad, rad/s, rad/s^2
 
 
@@ -33,15 +34,19 @@ class Target(NamedTuple):
     rotation: Array  # (k, 3, 3) tool to map_ned; (0, 3, 3) where it is free
 
 
-class Water(NamedTuple):
-    """What decides the thrust that a motion needs."""
+class Surroundings(NamedTuple):
+    """What decides the thrust that a motion needs, and what the vehicle must keep clear of."""
 
     shares: Array  # (thrusters, 6) share of each thruster's limit per unit of wrench
     current: Array  # (3,) m/s, map_ned
+    shapes: Array  # of `uvms_dynamics.geometry`
+    margins: Array  # (pairs,) m, least clearances; none: they do not count
 
 
-NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
-"""No thruster limits a plan."""
+NO_SURROUNDINGS = Surroundings(np.zeros((0, 6)), np.zeros(3), np.zeros((1, 1)), np.zeros(0))
+"""Neither thrusters nor bodies limit a plan."""
+NEAR_M = 0.15
+"""A clearance of this much more than its margin is as good as any."""
 
 
 @inner
@@ -96,11 +101,15 @@ def _body_motion(motion, vehicle, nu, nu_dot):
 
 
 @shared
-def sample_values(model, shares, current, motion, aim, rotation, moved, thrust, out):
+def sample_values(
+    model, shares, current, shapes, margins, motion, aim, rotation, moved, thrust, close, out
+):
     """Fill `out` with all values of one instant; those of the posture alone only if `moved`.
 
     motion (3, d): posture, rates, accelerations. `aim` and `rotation` of `read_aim`; no rotation
-    is prescribed where it is zero. `thrust`: whether the thrusters' shares count.
+    is prescribed where it is zero. `thrust`, `close`: whether the thrusters' shares and the
+    clearances count. The four arrays after `model` are
+    those of `Surroundings`.
     """
     n = motion.shape[1] - 1
     frames, tool = np.empty((n + 1, FRAME_COLUMNS)), np.empty((3, 3))
@@ -119,6 +128,8 @@ def sample_values(model, shares, current, motion, aim, rotation, moved, thrust, 
         _posture_values(model, motion, rotation, frames, out)
     if thrust:
         _thrust_shares(model, shares, current, motion, nu, nu_dot, out)
+    if close and moved:
+        _clearances(model, shapes, margins, motion, vehicle, out[THRUST + shares.shape[0] :])
 
 
 @shared
@@ -166,16 +177,34 @@ def _thrust_shares(model, shares, current, motion, nu, nu_dot, out):
         out[THRUST + k] = total
 
 
+@inner
+def _clearances(model, shapes, margins, motion, vehicle, out):
+    """Clearance of each pair, m, as far as it matters."""
+    c, s = np.cos(motion[0, 0]), np.sin(motion[0, 0])
+    clearances_into(
+        model, shapes, (vehicle[0, 0], vehicle[0, 1], vehicle[0, 2]),
+        (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0), motion[0, 1:],
+        clearance_work(model, shapes), out,
+    )  # fmt: skip
+    for k in range(margins.shape[0]):
+        out[k] = min(out[k], margins[k] + NEAR_M)
+
+
 @shared
-def sample_jacobian(model, shares, current, motion, aim, rotation, thrust, base, moved, out):
+def sample_jacobian(
+    model, shares, current, shapes, margins, motion, aim, rotation, thrust, close, base, moved, out
+):
     """Fill `out` (values, 3 d) with the derivatives of all values by forward differences."""
-    d = motion.shape[1]
+    d, clear = motion.shape[1], THRUST + shares.shape[0]
     for row in range(3):
         for column in range(d):
             kept = motion[row, column]
             motion[row, column] = kept + STEP
-            sample_values(model, shares, current, motion, aim, rotation, row == 0, thrust, moved)
+            sample_values(
+                model, shares, current, shapes, margins, motion, aim, rotation, row == 0, thrust,
+                close, moved,
+            )  # fmt: skip
             motion[row, column] = kept
             for k in range(base.shape[0]):
-                still = row > 0 and (k < 6 or ATTITUDE <= k < THRUST)
+                still = row > 0 and (k < 6 or ATTITUDE <= k < THRUST or k >= clear)
                 out[k, row * d + column] = 0.0 if still else (moved[k] - base[k]) / STEP

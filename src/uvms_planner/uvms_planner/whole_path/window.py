@@ -16,7 +16,7 @@ from uvms_planner.whole_path.discrete import Discrete, discretise
 from uvms_planner.whole_path.newton import Iteration
 from uvms_planner.whole_path.path_problem import CostWeights, PathProblem, Posture, ToolPath
 from uvms_planner.whole_path.plan import PathPlan
-from uvms_planner.whole_path.sample import NO_WATER, Water
+from uvms_planner.whole_path.sample import NO_SURROUNDINGS, Surroundings
 from uvms_planner.whole_path.spline import basis_at, greville, knots_at
 
 PIECES_S = (0.25,) * 2 + (0.5,) * 5 + (1.0,) * 5 + (2.0,) * 4  # 16 s
@@ -58,13 +58,13 @@ class PathWindow:
         limits: MotionLimits,
         whole: PathPlan | None = None,
         weights: CostWeights | None = None,
-        water: Water = NO_WATER,
+        around: Surroundings = NO_SURROUNDINGS,
     ):
         self.model = model  # may be exchanged when the payload changes
         self.tool = tool
         self.limits = limits
         self.whole = whole
-        self.water = water
+        self.around = around
         self._weights = weights or CostWeights()
         self._breaks = np.concatenate([[0.0], np.cumsum(PIECES_S)])
         self._knots = knots_at(self._breaks)
@@ -101,14 +101,14 @@ class PathWindow:
     def _discrete(self, begin: float, start: Posture) -> Discrete:
         problem = PathProblem(
             self.model, self.tool.after(begin), self.duration, start, self.limits, self._weights,
-            self.water, self._end(begin),
+            self.around, self._end(begin),
         )  # fmt: skip
         template = self._template
         if template is None or (template.problem.end is None) != (problem.end is None):
             template = discretise(problem, self._breaks, SAMPLES, TIGHT)
             self._template = template
         return replace(
-            template, problem=problem, target=problem.target(template.times), water=self.water
+            template, problem=problem, target=problem.target(template.times), around=self.around
         )
 
     def _end(self, begin: float) -> Posture | None:
