@@ -3,17 +3,25 @@
 from uvms_planner.whole_path.path_problem import CostWeights, PathProblem, Posture, ToolPath
 from uvms_planner.whole_path.plan import PathPlan
 from uvms_planner.whole_path.plan_report import LimitShare, PlanReport
-from uvms_planner.whole_path.sample import Water
+from uvms_planner.whole_path.sample import Surroundings
+from uvms_planner.whole_path.slower import SlowerPlan, slow_down
 from uvms_planner.whole_path.solve import solve
+from uvms_planner.whole_path.surroundings import surroundings
+from uvms_planner.whole_path.window import PathWindow, WindowPlan
 
 __all__ = [
     "CostWeights",
     "LimitShare",
     "PathPlan",
     "PathProblem",
+    "PathWindow",
     "PlanReport",
     "Posture",
+    "SlowerPlan",
+    "Surroundings",
     "ToolPath",
-    "Water",
+    "WindowPlan",
+    "slow_down",
     "solve",
+    "surroundings",
 ]

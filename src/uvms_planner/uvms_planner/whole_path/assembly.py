@@ -10,9 +10,17 @@ from typing import NamedTuple
 import numpy as np
 
 from uvms_core.signals import Array
-from uvms_dynamics.kernels.jit import inner, kernel, shared
+from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.whole_path.barrier import linearised, penalty
-from uvms_planner.whole_path.sample import THRUST, TURN, WRENCHES, sample_jacobian, sample_values
+from uvms_planner.whole_path.sample import (
+    NEAR_M,
+    THRUST,
+    TURN,
+    WRENCHES,
+    read_aim,
+    sample_jacobian,
+    sample_values,
+)
 from uvms_planner.whole_path.spline import DEGREE
 
 FUNCTIONS = DEGREE + 1
@@ -89,11 +97,14 @@ def _wished(wishes, motion, values):
     return 0.5 * total
 
 
-@shared
-def _one_sample(model, water, grid, target, bounds, wishes, mu, rho, i, motion, values):
-    """The share of sample i in the cost, without its weight."""
-    thrust = values.shape[0] > THRUST
-    sample_values(model, water, motion, target, i, True, thrust, values)
+@inner
+def _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, values):
+    """The share of one sample in the cost, without its weight."""
+    thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
+    sample_values(
+        model, around.shares, around.current, around.shapes, around.margins,
+        motion, aim, rotation, True, thrust, close, values,
+    )  # fmt: skip
     total = _wished(wishes, motion, values)
     for k in range(WRENCHES):
         total += 0.5 * values[k] ** 2
@@ -106,7 +117,7 @@ def _one_sample(model, water, grid, target, bounds, wishes, mu, rho, i, motion, 
     return total
 
 
-@shared
+@inner
 def _row_value(rows, r, coefficients):
     total = 0.0
     for j in range(3):
@@ -115,7 +126,7 @@ def _row_value(rows, r, coefficients):
     return total
 
 
-@shared
+@inner
 def _row_cost(rows, r, coefficients, mu, rho):
     """Penalty of a linear limit."""
     v, total = _row_value(rows, r, coefficients), 0.0
@@ -126,7 +137,7 @@ def _row_cost(rows, r, coefficients, mu, rho):
     return rows.weights[r] * total
 
 
-@shared
+@inner
 def _row_slope(rows, r, coefficients, mu, rho, memory):
     """Slope and curvature of a linear limit, by its value."""
     v, scale = _row_value(rows, r, coefficients), rows.scale[r]
@@ -141,14 +152,16 @@ def _row_slope(rows, r, coefficients, mu, rho, memory):
 
 
 @kernel
-def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients):
+def cost(model, around, grid, target, bounds, rows, wishes, mu, rho, coefficients):
     """F(c) for coefficients (K, d)."""
     motion = np.empty((3, coefficients.shape[1]))
     values = np.zeros(WRENCHES + bounds.lower.shape[0])
+    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     total = 0.0
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
-        one = _one_sample(model, water, grid, target, bounds, wishes, mu, rho, i, motion, values)
+        read_aim(target, i, aim, rotation)
+        one = _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, values)
         total += grid.weights[i] * one
     for r in range(rows.first.shape[0]):
         total += _row_cost(rows, r, coefficients, mu, rho)
@@ -156,41 +169,46 @@ def cost(model, water, grid, target, bounds, rows, wishes, mu, rho, coefficients
 
 
 @kernel
-def disturbance(model, water, grid, target, bounds, coefficients):
+def disturbance(model, around, grid, target, bounds, coefficients):
     """J: the integral of the squared wrenches."""
     motion = np.empty((3, coefficients.shape[1]))
     values = np.zeros(WRENCHES + bounds.lower.shape[0])
+    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     total = 0.0
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
-        sample_values(model, water, motion, target, i, True, False, values)
+        read_aim(target, i, aim, rotation)
+        sample_values(
+            model, around.shares, around.current, around.shapes, around.margins,
+            motion, aim, rotation, True, False, False, values,
+        )  # fmt: skip
         for k in range(WRENCHES):
             total += grid.weights[i] * values[k] ** 2
     return total
 
 
-@shared
-def _add_square(row, factor, slope, matrix, vector):
-    """Matrix += factor row^T row (lower half), vector += slope row."""
-    for a in range(row.shape[0]):
-        x = factor * row[a]
-        vector[a] += slope * row[a]
-        for b in range(a + 1):
-            matrix[a, b] += x * row[b]
+@inner
+def _add_square(rows, k, factor, slope, matrix, vector):
+    """Matrix += factor row^T row, vector += slope row, with row k of `rows`."""
+    for a in range(vector.shape[0]):
+        x = factor * rows[k, a]
+        vector[a] += slope * rows[k, a]
+        for b in range(vector.shape[0]):
+            matrix[a, b] += x * rows[k, b]
 
 
-@shared
+@inner
 def _local(bounds, wishes, mu, rho, memory, i, weight, motion, values, jacobian, matrix, vector):
-    """Matrix (3d, 3d, lower half) and gradient (3d,) of one sample in terms of its motion."""
+    """Matrix (3d, 3d) and gradient (3d,) of one sample in terms of its motion."""
     d = motion.shape[1]
     matrix[:] = 0.0
     vector[:] = 0.0
     for k in range(WRENCHES):
-        _add_square(jacobian[k], weight, weight * values[k], matrix, vector)
+        _add_square(jacobian, k, weight, weight * values[k], matrix, vector)
     if wishes.turn > 0.0:
         for k in range(3):
             w = weight * wishes.turn
-            _add_square(jacobian[TURN + k], w, w * values[TURN + k], matrix, vector)
+            _add_square(jacobian, TURN + k, w, w * values[TURN + k], matrix, vector)
     for j in range(bounds.lower.shape[0]):
         v, scale = values[WRENCHES + j], bounds.scale[j]
         slope, curvature = 0.0, 0.0
@@ -202,7 +220,7 @@ def _local(bounds, wishes, mu, rho, memory, i, weight, motion, values, jacobian,
             z, c = linearised((bounds.lower[j] - v) / scale, mu, price, memory, i, j, 2)
             slope, curvature = slope - z / scale, curvature + c / scale**2
         if curvature > 0.0:
-            _add_square(jacobian[WRENCHES + j], weight * curvature, weight * slope, matrix, vector)
+            _add_square(jacobian, WRENCHES + j, weight * curvature, weight * slope, matrix, vector)
     for k in range(d):
         for row in range(1, 3):
             w = weight * wishes.motion[row, k]
@@ -214,47 +232,67 @@ def _local(bounds, wishes, mu, rho, memory, i, weight, motion, values, jacobian,
             vector[k] += weight * wishes.stop[k] * beyond
 
 
-@shared
+@inner
 def _spread(grid, i, matrix, vector, half, band, gradient):
     """Add a sample's matrix and gradient to those of the coefficients."""
     size = vector.shape[0]
     d = size // 3
+    basis, first, numbers = grid.basis, grid.first[i], grid.numbers
     for a in range(FUNCTIONS):
-        block = grid.numbers[grid.first[i] + a]
-        for row in range(size):
-            for j in range(d):
-                total = 0.0
-                for e in range(3):
-                    m = e * d + j
-                    x = matrix[row, m] if row >= m else matrix[m, row]
-                    total += x * grid.basis[i, e, a]
-                half[a, j, row] = total
-        if block < 0:
-            continue
-        for j in range(d):
-            for e in range(3):
-                gradient[block * d + j] += grid.basis[i, e, a] * vector[e * d + j]
-    for a in range(FUNCTIONS):
-        column_block = grid.numbers[grid.first[i] + a]
+        column_block = numbers[first + a]
         if column_block < 0:
             continue
-        for b in range(FUNCTIONS):
-            row_block = grid.numbers[grid.first[i] + b]
-            if row_block < column_block:
-                continue
-            for j in range(d):
-                column = column_block * d + j
-                for m in range(j if row_block == column_block else 0, d):
-                    total = 0.0
-                    for e in range(3):
-                        total += grid.basis[i, e, b] * half[a, j, e * d + m]
-                    band[column, row_block * d + m - column] += total
+        for j in range(d):
+            column = column_block * d + j
+            x0, x1, x2 = basis[i, 0, a], basis[i, 1, a], basis[i, 2, a]
+            gradient[column] += x0 * vector[j] + x1 * vector[d + j] + x2 * vector[2 * d + j]
+            for k in range(size):
+                half[k] = x0 * matrix[j, k] + x1 * matrix[d + j, k] + x2 * matrix[2 * d + j, k]
+            for b in range(FUNCTIONS):
+                row_block = numbers[first + b]
+                if row_block < column_block:
+                    continue
+                x0, x1, x2 = basis[i, 0, b], basis[i, 1, b], basis[i, 2, b]
+                begin = row_block * d - column
+                for m in range(max(-begin, 0), d):
+                    band[column, begin + m] += (
+                        x0 * half[m] + x1 * half[d + m] + x2 * half[2 * d + m]
+                    )
+
+
+@inner
+def _near_a_limit(around, bounds, values):
+    """Whether a thruster's share is so great that its derivatives count."""
+    for k in range(THRUST, THRUST + around.shares.shape[0]):
+        if abs(values[k]) > NEAR * bounds.upper[k - WRENCHES]:
+            return True
+    return False
+
+
+@inner
+def _near_a_body(around, values):
+    """Whether a clearance is so small that its derivatives count."""
+    first = THRUST + around.shares.shape[0]
+    for k in range(around.margins.shape[0]):
+        if values[first + k] < around.margins[k] + NEAR_M:
+            return True
+    return False
+
+
+@inner
+def _forget(around, needed, near, jacobian):
+    """Clear the derivatives that were not taken."""
+    first = THRUST + around.shares.shape[0]
+    if not needed:
+        jacobian[THRUST:first] = 0.0
+    if not near:
+        jacobian[first:] = 0.0
 
 
 @kernel
 def linearise(
     model,
-    water,
+    around,
     grid,
     target,
     bounds,
@@ -276,19 +314,24 @@ def linearise(
     motion, size = np.empty((3, d)), WRENCHES + bounds.lower.shape[0]
     values, moved, jacobian = np.zeros(size), np.zeros(size), np.zeros((size, 3 * d))
     matrix, vector = np.empty((3 * d, 3 * d)), np.empty(3 * d)
-    half = np.empty((FUNCTIONS, d, 3 * d))
+    half, aim, rotation = np.empty(3 * d), np.empty((3, 3)), np.empty((3, 3))
     gradient = np.zeros(band.shape[0])
     band[:] = 0.0
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
-        thrust = size > THRUST
-        sample_values(model, water, motion, target, i, True, thrust, values)
-        needed = False
-        for k in range(THRUST, size):
-            needed = needed or abs(values[k]) > NEAR * bounds.upper[k - WRENCHES]
-        sample_jacobian(model, water, motion, target, i, needed, values, moved, jacobian)
-        if thrust and not needed:
-            jacobian[THRUST:] = 0.0
+        read_aim(target, i, aim, rotation)
+        thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
+        sample_values(
+            model, around.shares, around.current, around.shapes, around.margins,
+            motion, aim, rotation, True, thrust, close, values,
+        )  # fmt: skip
+        needed = _near_a_limit(around, bounds, values)
+        near = _near_a_body(around, values)
+        sample_jacobian(
+            model, around.shares, around.current, around.shapes, around.margins,
+            motion, aim, rotation, needed, near, values, moved, jacobian,
+        )  # fmt: skip
+        _forget(around, needed, near, jacobian)
         _local(
             bounds,
             wishes,
@@ -309,7 +352,7 @@ def linearise(
     return gradient
 
 
-@shared
+@inner
 def _add_row(grid, rows, r, mu, rho, memory, coefficients, band, gradient):
     d = coefficients.shape[1]
     slope, curvature = _row_slope(rows, r, coefficients, mu, rho, memory)

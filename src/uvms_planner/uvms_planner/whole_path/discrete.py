@@ -11,7 +11,7 @@ from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path import assembly
 from uvms_planner.whole_path.assembly import Bounds, Grid, Rows, Wishes
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import Target, Water
+from uvms_planner.whole_path.sample import Surroundings, Target
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.spline import (
     DEGREE,
@@ -20,6 +20,7 @@ from uvms_planner.whole_path.spline import (
     end_coefficients,
     greville,
     knots_at,
+    last_coefficients,
     rate_factors,
 )
 
@@ -32,9 +33,10 @@ class Discrete:
 
     problem: PathProblem
     knots: Array
+    times: Array  # (k,) s, of the samples
     grid: Grid
     target: Target
-    water: Water
+    around: Surroundings
     bounds: Bounds
     rows: Rows
     wishes: Wishes
@@ -47,7 +49,7 @@ class Discrete:
     def arguments(self):
         """The first arguments of the kernels."""
         return (
-            self.problem.model, self.water, self.grid, self.target, self.bounds, self.rows,
+            self.problem.model, self.around, self.grid, self.target, self.bounds, self.rows,
             self.wishes,
         )  # fmt: skip
 
@@ -70,14 +72,17 @@ class Discrete:
     def disturbance(self, coefficients: Array) -> float:
         """J on the samples of the quadrature."""
         return assembly.disturbance(
-            self.problem.model, self.water, self.grid, self.target, self.bounds, coefficients
+            self.problem.model, self.around, self.grid, self.target, self.bounds, coefficients
         )
 
     def complete(self, coefficients: Array) -> Array:
-        """The same coefficients (K, d) with the start and the rest at the end put right."""
-        out, start = coefficients.copy(), self.problem.start
+        """The same coefficients (K, d) with those at both ends put right."""
+        out, start, end = coefficients.copy(), self.problem.start, self.problem.end
         out[:FIXED] = end_coefficients(self.knots, start.value, start.rate, start.acceleration)
-        out[-FIXED:] = out[-FIXED]
+        if end is None:
+            out[-FIXED:] = out[-FIXED]
+        else:
+            out[-FIXED:] = last_coefficients(self.knots, end.value, end.rate, end.acceleration)
         return out
 
 
@@ -90,11 +95,11 @@ def discretise(
     basis = basis_at(knots, times)
     count = len(knots) - DEGREE - 1
     numbers = np.arange(count) - FIXED
-    numbers[:FIXED], numbers[-FIXED:] = -1, count - 2 * FIXED
+    numbers[:FIXED], numbers[-FIXED:] = -1, count - 2 * FIXED if problem.end is None else -1
     grid = Grid(basis.first, basis.values, weights, numbers.astype(np.int64))
     return Discrete(
-        problem, knots, grid, problem.target(times), problem.water, sampled_bounds(problem, tight),
-        _rows(problem, knots, numbers), _wishes(problem),
+        problem, knots, times, grid, problem.target(times), problem.around,
+        sampled_bounds(problem, tight), _rows(problem, knots, numbers), _wishes(problem),
     )  # fmt: skip
 
 

@@ -10,7 +10,7 @@ from uvms_core.end_effector_path import PathSamples
 from uvms_core.signals import Array
 from uvms_dynamics import Model
 from uvms_planner.limits import MotionLimits
-from uvms_planner.whole_path.sample import NO_WATER, Target, Water
+from uvms_planner.whole_path.sample import NO_SURROUNDINGS, Surroundings, Target
 
 
 class Path(Protocol):
@@ -67,7 +67,8 @@ class PathProblem:
     start: Posture
     limits: MotionLimits
     weights: CostWeights = field(default_factory=CostWeights)
-    water: Water = NO_WATER
+    around: Surroundings = NO_SURROUNDINGS
+    end: Posture | None = None  # at which the plan ends; None: at rest, in any posture
     turn_tolerance: float = np.deg2rad(0.5)  # rad, from a prescribed orientation
 
     @property
@@ -81,30 +82,35 @@ class PathProblem:
 
 
 class ToolPath:
-    """A path of the end effector, possibly followed `factor` times slower.
+    """A path of the end effector from `begin` s on, possibly followed `factor` times slower.
 
     `path` is an EndEffectorPath or a JoinedPath: anything with `duration`, `oriented` and
     `samples(times)`.
     """
 
-    def __init__(self, path: Path, factor: float = 1.0):
+    def __init__(self, path: Path, factor: float = 1.0, begin: float = 0.0):
         self.path = path
         self.factor = factor
+        self.begin = begin
         self.oriented = bool(path.oriented)
 
     @property
     def duration(self) -> float:
-        """S, from the first point to the last."""
-        return float(self.path.duration) * self.factor
+        """S, from `begin` to the last point."""
+        return float(self.path.duration) * self.factor - self.begin
+
+    def after(self, time: float) -> "ToolPath":
+        """What is left of the path `time` s later; it rests where it has ended."""
+        return ToolPath(self.path, self.factor, self.begin + time)
 
     def slower(self, factor: float) -> "ToolPath":
         """The same way in `factor` times the time."""
-        return ToolPath(self.path, self.factor * factor)
+        return ToolPath(self.path, self.factor * factor, self.begin * factor)
 
     def target(self, times: Array) -> Target:
         """Position, velocity, acceleration and rotation at `times` (k,) s."""
         k = self.factor
-        s = self.path.samples(np.asarray(times, dtype=float) / k)
+        s = self.path.samples((np.asarray(times, dtype=float) + self.begin) / k)
         rotation = np.zeros((0, 3, 3))
         if s.quaternion is not None:
             rotation = Rotation.from_quat(s.quaternion).as_matrix()

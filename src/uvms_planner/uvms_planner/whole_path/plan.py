@@ -10,7 +10,7 @@ from uvms_dynamics.kernels.jit import kernel
 from uvms_planner.segment import Samples
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan_report import PlanReport, report_of
-from uvms_planner.whole_path.sample import THRUST, sample_values, vehicle_motion
+from uvms_planner.whole_path.sample import THRUST, read_aim, sample_values, vehicle_motion
 from uvms_planner.whole_path.spline import DEGREE, basis_at
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
 
@@ -54,7 +54,7 @@ class PathPlan:
     def values(self, times: Array) -> Array:
         """Wrenches, motion, attitude, turn and thrust at `times` (k,) s, as in `sample`."""
         return plan_values(
-            self.problem.model, self.problem.water, self.posture(times), self.problem.target(times)
+            self.problem.model, self.problem.around, self.posture(times), self.problem.target(times)
         )
 
     @cached_property
@@ -78,16 +78,24 @@ def _vehicle_motions(model, motion, target):
     """Position, velocity and acceleration (k, 3, 3) of the vehicle."""
     out = np.empty((motion.shape[0], 3, 3))
     frames, tool = np.empty((motion.shape[2], FRAME_COLUMNS)), np.empty((3, 3))
+    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     for i in range(motion.shape[0]):
-        vehicle_motion(model, motion[i], target, i, frames, tool, out[i])
+        read_aim(target, i, aim, rotation)
+        vehicle_motion(model, motion[i], aim, frames, tool, out[i])
     return out
 
 
 @kernel
-def plan_values(model, water, motion, target):
+def plan_values(model, around, motion, target):
     """All values of `sample.sample_values` at the instants of motion (k, 3, d): (k, values)."""
-    out = np.zeros((motion.shape[0], THRUST + water.shares.shape[0]))
+    thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
+    size = THRUST + around.shares.shape[0] + around.margins.shape[0]
+    out = np.zeros((motion.shape[0], size))
+    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
     for i in range(motion.shape[0]):
-        thrust = water.shares.shape[0] > 0
-        sample_values(model, water, motion[i], target, i, True, thrust, out[i])
+        read_aim(target, i, aim, rotation)
+        sample_values(
+            model, around.shares, around.current, around.shapes, around.margins, motion[i], aim,
+            rotation, True, thrust, close, out[i],
+        )  # fmt: skip
     return out

@@ -11,6 +11,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics import coupling_wrench, inverse_dynamics, restoring_wrench
+from uvms_dynamics.kernels.clearance import clearance_work, clearances_into
 from uvms_dynamics.kernels.jit import inner, shared
 from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.problem import yaw_quaternion
@@ -20,7 +21,7 @@ WRENCHES = 12  # restoring and coupling wrench
 POSITION = WRENCHES  # of the vehicle, then its velocity and acceleration, world axes
 ATTITUDE = POSITION + 9  # roll and pitch that the vehicle takes up freely
 TURN = ATTITUDE + 2  # from the prescribed orientation of the tool to its own
-THRUST = TURN + 3  # share of each thruster's authority
+THRUST = TURN + 3  # share of each thruster's authority, then clearances
 STEP = 1e-6  # of a finite difference, rad, rad/s, rad/s^2
 
 
@@ -33,20 +34,42 @@ class Target(NamedTuple):
     rotation: Array  # (k, 3, 3) tool to map_ned; (0, 3, 3) where it is free
 
 
-class Water(NamedTuple):
-    """What decides the thrust that a motion needs."""
+class Surroundings(NamedTuple):
+    """What decides the thrust that a motion needs, and what the vehicle must keep clear of."""
 
     shares: Array  # (thrusters, 6) share of each thruster's limit per unit of wrench
     current: Array  # (3,) m/s, map_ned
+    shapes: Array  # of `uvms_dynamics.geometry`
+    margins: Array  # (pairs,) m, least clearances; none: they do not count
 
 
-NO_WATER = Water(np.zeros((0, 6)), np.zeros(3))
-"""No thruster limits a plan."""
+NO_SURROUNDINGS = Surroundings(np.zeros((0, 6)), np.zeros(3), np.zeros((1, 1)), np.zeros(0))
+"""Neither thrusters nor bodies limit a plan."""
+NEAR_M = 0.15
+"""A clearance of this much more than its margin is as good as any."""
 
 
-@shared
-def vehicle_motion(model, motion, target, i, frames, tool, out):
-    """Fill `out` (3, 3): position, velocity and acceleration of the vehicle, world axes."""
+@inner
+def read_aim(target, i, aim, rotation):
+    """Fill `aim` (3, 3) and `rotation` (3, 3) with the target at instant i.
+
+    numba counts the references of all arrays of a tuple that it hands on, so that what is called
+    for every derivative takes arrays.
+    """
+    oriented = target.rotation.shape[0] > 0
+    for k in range(3):
+        aim[0, k], aim[1, k] = target.position[i, k], target.velocity[i, k]
+        aim[2, k] = target.acceleration[i, k]
+        for m in range(3):
+            rotation[k, m] = target.rotation[i, k, m] if oriented else 0.0
+
+
+@inner
+def vehicle_motion(model, motion, aim, frames, tool, out):
+    """Fill `out` (3, 3): position, velocity and acceleration of the vehicle, world axes.
+
+    aim (3, 3) has those of the tool in its rows.
+    """
     tool_motion(model, motion, frames, tool)
     c, s = np.cos(motion[0, 0]), np.sin(motion[0, 0])
     w, bend = motion[1, 0], motion[2, 0]
@@ -54,15 +77,15 @@ def vehicle_motion(model, motion, target, i, frames, tool, out):
     vx, vy = tool[1, 0] - w * y, tool[1, 1] + w * x
     ax = tool[2, 0] - bend * y - w * (tool[1, 1] + vy)
     ay = tool[2, 1] + bend * x + w * (tool[1, 0] + vx)
-    out[0, 0] = target.position[i, 0] - (c * x - s * y)
-    out[0, 1] = target.position[i, 1] - (s * x + c * y)
-    out[1, 0] = target.velocity[i, 0] - (c * vx - s * vy)
-    out[1, 1] = target.velocity[i, 1] - (s * vx + c * vy)
-    out[2, 0] = target.acceleration[i, 0] - (c * ax - s * ay)
-    out[2, 1] = target.acceleration[i, 1] - (s * ax + c * ay)
-    out[0, 2] = target.position[i, 2] - tool[0, 2]
-    out[1, 2] = target.velocity[i, 2] - tool[1, 2]
-    out[2, 2] = target.acceleration[i, 2] - tool[2, 2]
+    out[0, 0] = aim[0, 0] - (c * x - s * y)
+    out[0, 1] = aim[0, 1] - (s * x + c * y)
+    out[1, 0] = aim[1, 0] - (c * vx - s * vy)
+    out[1, 1] = aim[1, 1] - (s * vx + c * vy)
+    out[2, 0] = aim[2, 0] - (c * ax - s * ay)
+    out[2, 1] = aim[2, 1] - (s * ax + c * ay)
+    out[0, 2] = aim[0, 2] - tool[0, 2]
+    out[1, 2] = aim[1, 2] - tool[1, 2]
+    out[2, 2] = aim[2, 2] - tool[2, 2]
 
 
 @inner
@@ -78,16 +101,21 @@ def _body_motion(motion, vehicle, nu, nu_dot):
 
 
 @shared
-def sample_values(model, water, motion, target, i, moved, thrust, out):
+def sample_values(
+    model, shares, current, shapes, margins, motion, aim, rotation, moved, thrust, close, out
+):
     """Fill `out` with all values of one instant; those of the posture alone only if `moved`.
 
-    motion (3, d): posture, rates, accelerations. `thrust`: whether the thrusters' shares count.
+    motion (3, d): posture, rates, accelerations. `aim` and `rotation` of `read_aim`; no rotation
+    is prescribed where it is zero. `thrust`, `close`: whether the thrusters' shares and the
+    clearances count. The four arrays after `model` are
+    those of `Surroundings`.
     """
     n = motion.shape[1] - 1
     frames, tool = np.empty((n + 1, FRAME_COLUMNS)), np.empty((3, 3))
     vehicle = np.empty((3, 3))
     nu, nu_dot = np.zeros(6), np.zeros(6)
-    vehicle_motion(model, motion, target, i, frames, tool, vehicle)
+    vehicle_motion(model, motion, aim, frames, tool, vehicle)
     _body_motion(motion, vehicle, nu, nu_dot)
     q, q_dot, q_ddot = motion[0, 1:], motion[1, 1:], motion[2, 1:]
     coupling = coupling_wrench(model, nu, nu_dot, q, q_dot, q_ddot)
@@ -97,13 +125,15 @@ def sample_values(model, water, motion, target, i, moved, thrust, out):
         for k in range(3):
             out[POSITION + 3 * row + k] = vehicle[row, k]
     if moved:
-        _posture_values(model, motion, target, i, frames, out)
+        _posture_values(model, motion, rotation, frames, out)
     if thrust:
-        _thrust_shares(model, water, motion, nu, nu_dot, out)
+        _thrust_shares(model, shares, current, motion, nu, nu_dot, out)
+    if close and moved:
+        _clearances(model, shapes, margins, motion, vehicle, out[THRUST + shares.shape[0] :])
 
 
 @shared
-def _posture_values(model, motion, target, i, frames, out):
+def _posture_values(model, motion, rotation, frames, out):
     """Restoring wrench, free attitude and the tool's turn, which no rate changes."""
     n = motion.shape[1] - 1
     q = motion[0, 1:]
@@ -118,45 +148,63 @@ def _posture_values(model, motion, target, i, frames, out):
     out[ATTITUDE], out[ATTITUDE + 1] = np.arctan2(y, z), np.arctan2(-x, np.hypot(y, z))
     for k in range(3):
         out[TURN + k] = 0.0
-    if target.rotation.shape[0] > 0:
+    if rotation[0, 0] != 0.0 or rotation[1, 0] != 0.0 or rotation[2, 0] != 0.0:
         turned, gap = np.empty((3, 3)), np.zeros((3, 3))
         tool_axes(model, frames, n, motion[0, 0], turned)
         for row in range(3):
             for column in range(3):
                 for k in range(3):
-                    gap[row, column] += turned[row, k] * target.rotation[i, column, k]
+                    gap[row, column] += turned[row, k] * rotation[column, k]
         vector = quat_to_rotation_vector(matrix_to_quat(gap))
         for k in range(3):
             out[TURN + k] = vector[k]
 
 
 @shared
-def _thrust_shares(model, water, motion, nu, nu_dot, out):
+def _thrust_shares(model, shares, current, motion, nu, nu_dot, out):
     """Share of each thruster's limit that the motion needs, by the least squares of all."""
     c, s, w = np.cos(motion[0, 0]), np.sin(motion[0, 0]), motion[1, 0]
-    x = c * water.current[0] + s * water.current[1]
-    y = -s * water.current[0] + c * water.current[1]
-    nu[0], nu[1], nu[2] = nu[0] - x, nu[1] - y, nu[2] - water.current[2]
+    x = c * current[0] + s * current[1]
+    y = -s * current[0] + c * current[1]
+    nu[0], nu[1], nu[2] = nu[0] - x, nu[1] - y, nu[2] - current[2]
     nu_dot[0], nu_dot[1] = nu_dot[0] - w * y, nu_dot[1] + w * x
     level = yaw_quaternion(0.0)
     needed = inverse_dynamics(model, level, nu, nu_dot, motion[0, 1:], motion[1, 1:], motion[2, 1:])
-    for k in range(water.shares.shape[0]):
+    for k in range(shares.shape[0]):
         total = 0.0
         for j in range(6):
-            total += water.shares[k, j] * needed[j]
+            total += shares[k, j] * needed[j]
         out[THRUST + k] = total
 
 
+@inner
+def _clearances(model, shapes, margins, motion, vehicle, out):
+    """Clearance of each pair, m, as far as it matters."""
+    c, s = np.cos(motion[0, 0]), np.sin(motion[0, 0])
+    clearances_into(
+        model, shapes, (vehicle[0, 0], vehicle[0, 1], vehicle[0, 2]),
+        (c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0), motion[0, 1:],
+        clearance_work(model, shapes), out,
+    )  # fmt: skip
+    for k in range(margins.shape[0]):
+        out[k] = min(out[k], margins[k] + NEAR_M)
+
+
 @shared
-def sample_jacobian(model, water, motion, target, i, thrust, base, moved, out):
+def sample_jacobian(
+    model, shares, current, shapes, margins, motion, aim, rotation, thrust, close, base, moved, out
+):
     """Fill `out` (values, 3 d) with the derivatives of all values by forward differences."""
-    d = motion.shape[1]
+    d, clear = motion.shape[1], THRUST + shares.shape[0]
     for row in range(3):
         for column in range(d):
             kept = motion[row, column]
             motion[row, column] = kept + STEP
-            sample_values(model, water, motion, target, i, row == 0, thrust, moved)
+            sample_values(
+                model, shares, current, shapes, margins, motion, aim, rotation, row == 0, thrust,
+                close, moved,
+            )  # fmt: skip
             motion[row, column] = kept
             for k in range(base.shape[0]):
-                still = row > 0 and (k < 6 or ATTITUDE <= k < THRUST)
+                still = row > 0 and (k < 6 or ATTITUDE <= k < THRUST or k >= clear)
                 out[k, row * d + column] = 0.0 if still else (moved[k] - base[k]) / STEP

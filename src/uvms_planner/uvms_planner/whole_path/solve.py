@@ -6,10 +6,11 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_planner.whole_path.discrete import Discrete, discretise
-from uvms_planner.whole_path.newton import Schedule, solve_on_knots
+from uvms_planner.whole_path.newton import Schedule, Solution, solve_on_knots
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
 from uvms_planner.whole_path.plan import PathPlan
+from uvms_planner.whole_path.search import search
 
 ROUGH = Schedule(barriers=(1e-1, 1e-2, 1e-3, 1e-4))
 FULL = Schedule(barriers=(1e-3, 1e-4, 1e-5))
@@ -32,13 +33,22 @@ def solve(
     breaks = coarse_breaks(problem)
     coarse, fine = discretise(problem, breaks), discretise(problem, fine_breaks(breaks))
     progress(0.0, "searching")
-    held = np.tile(problem.start.value, (len(coarse.grid.numbers), 1))
-    rough = solve_on_knots(coarse, held, ROUGH)
-    progress(0.4, "whole path")
+    rough = _rough(coarse, seed, lambda share: progress(0.5 * share, "searching"))
+    progress(0.5, "whole path")
     begin = fine.taken_from(coarse.knots, rough.coefficients)
-    plan = _polished(fine, begin, lambda share: progress(0.4 + 0.6 * share, "whole path"))
+    plan = _polished(fine, begin, lambda share: progress(0.5 + 0.5 * share, "whole path"))
     progress(1.0, "whole path")
     return plan
+
+
+def _rough(coarse: Discrete, seed: int, progress: Callable[[float], None]) -> Solution:
+    """The better of the optima near the posture held and near the fittest of the search."""
+    held = np.tile(coarse.problem.start.value, (len(coarse.grid.numbers), 1))
+    first = solve_on_knots(coarse, held, ROUGH, ticker(lambda s: progress(s / 3), ROUGH))
+    fittest = search(coarse, seed)
+    progress(2 / 3)
+    second = solve_on_knots(coarse, fittest, ROUGH, ticker(lambda s: progress((2 + s) / 3), ROUGH))
+    return min(first, second, key=lambda solution: solution.cost)
 
 
 def _polished(discrete: Discrete, begin: Array, progress: Callable[[float], None]) -> PathPlan:

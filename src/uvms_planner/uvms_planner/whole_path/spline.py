@@ -90,6 +90,12 @@ def end_coefficients(knots: Array, value: Array, rate: Array, acceleration: Arra
     )
 
 
+def last_coefficients(knots: Array, value: Array, rate: Array, acceleration: Array) -> Array:
+    """The last three coefficients (3, d) of a spline that ends in a given state."""
+    mirrored = end_coefficients(knots[-1] - knots[::-1], value, -rate, acceleration)
+    return mirrored[::-1]
+
+
 def greville(knots: Array) -> Array:
     """Times (K,) at which coefficients act most: the coefficients of the spline s(t) = t."""
     count = len(knots) - DEGREE - 1
