@@ -81,3 +81,11 @@ def test_a_box_is_seen_as_its_outline():
     assert np.ptp(columns) + 1 == pytest.approx(2000.0 / 9.0, abs=2)
     assert layer.depth[200, 200] == pytest.approx(9.0)
     assert layer.colour[200, 200] == pytest.approx(0.52 * np.array(OBSTACLE), abs=1e-3)
+
+
+def test_without_a_configuration_arm_and_hull_still_count(log_file, tmp_path):
+    log = RunLog.open(log_file)
+    path = tmp_path / "run.mcap"
+    with LogWriter(path) as copy:
+        copy.attach("vehicle.yaml", log.text("vehicle.yaml"))
+    assert {pair.kind for pair in run_geometry(RunLog.open(path)).pairs} == {"hull", "arm"}

@@ -21,11 +21,13 @@ class _Scene(Config):
 
 
 def run_obstacles(log: RunLog) -> Obstacles:
-    """The obstacles of a run.
+    """The obstacles of a run; none where its log has no configuration.
 
     Raises:
-        LogError: the log lacks its configuration, or it is damaged.
+        LogError: the configuration is damaged.
     """
+    if "config.yaml" not in log.attachments:
+        return ()
     given = {"obstacles": log.configuration().get("obstacles", ())}
     return validated(_Scene, given, f"log {log.path}: config.yaml", LogError).obstacles
 
@@ -34,7 +36,7 @@ def run_geometry(log: RunLog) -> Geometry:
     """Shapes of a run's vehicle, seabed and obstacles.
 
     Raises:
-        LogError: the log lacks its vehicle or its configuration, or they are damaged.
+        LogError: the log lacks its vehicle, or vehicle or configuration are damaged.
     """
     obstacles = run_obstacles(log)
     try:

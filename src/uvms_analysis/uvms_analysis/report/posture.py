@@ -60,10 +60,10 @@ def arrow(start: Array, span: Array, radius: float, colour: Colour) -> list[Shap
     """An arrow from a point along a vector, its head four radii long."""
     length = float(np.linalg.norm(span))
     neck = start + span * max(0.0, 1.0 - 6.0 * radius / length)
-    return [
-        rod(start, neck, radius, colour),
-        rod(neck, start + span, 2.5 * radius, colour, "cone"),
-    ]
+    head = rod(neck, start + span, 2.5 * radius, colour, "cone")
+    if length <= 6.0 * radius:  # too short for a shaft
+        return [head]
+    return [rod(start, neck, radius, colour), head]
 
 
 def body_shapes(vehicle: Vehicle, posture: Posture) -> list[Shape]:
