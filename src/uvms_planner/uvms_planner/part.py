@@ -39,7 +39,7 @@ class PlannerPart(Part):
         odometry, joints = tick[topics.ODOMETRY.name], tick[topics.JOINT_STATES.name]
         self.plan = None
         if (budget := tick[topics.DISTURBANCE_BUDGET.name]) is not None:
-            self.planner.hold(budget.payload)
+            self.planner.inform(budget)
         self.plan = self.planner.step(tick.stamp, odometry, joints)
         self._state = odometry, joints
         for reference in self.plan.references:

@@ -7,16 +7,18 @@ from uvms_planner.choice import Choice
 from uvms_planner.fitness import cost
 from uvms_planner.joined_path import JoinedPath
 from uvms_planner.on_path import FollowedStep, OnPath
-from uvms_planner.segment import Knot, tool_positions
-from uvms_planner.solver import StepSolver
+from uvms_planner.segment import Knot, Samples, tool_positions
+from uvms_planner.solver import StepSolver, posture_of
 from uvms_planner.whole_path import PathPlan
+from uvms_planner.whole_path.window import PathWindow, WindowPlan
 
 
 class PlannedPath(OnPath):
     """Gives the steps of a plan over a whole path that begins at the stamp `start`.
 
     The samples are those of the plan itself, so that the tool is on the path between the knots as
-    it is at them.
+    it is at them. Where payload or thrusters are not as they were when it was made, every step
+    plans the next seconds anew (`PathWindow`).
     """
 
     def __init__(
@@ -25,11 +27,35 @@ class PlannedPath(OnPath):
         super().__init__(path, start)
         self.motion = plan
         self._solver, self._step = solver, step
+        self._window: PathWindow | None = None
+        self._last: WindowPlan | None = None
+
+    def reconsider(self) -> None:
+        """Plan anew from the next step on: the model, or what the thrusters have, has changed."""
+        problem = self.motion.problem
+        self._last = None
+        self._window = PathWindow(
+            self._solver.model,
+            problem.tool,
+            problem.limits,
+            self.motion,
+            problem.weights,
+            self._solver.around,
+        )
+
+    def _samples(self, knot: Knot, times: Array) -> Samples:
+        """The motion at `times` (k,) s of the path, from the knot on."""
+        begin = float(times[0])
+        if self._window is not None and begin + self._window.duration <= self.path.duration:
+            self._last = self._window.solve(begin, posture_of(knot), self._last)
+        if self._last is not None and times[-1] <= self._last.end:
+            return self._last.plan.sample(times - self._last.begin)
+        return self.motion.sample(times)
 
     def plan(self, knot: Knot, times: Array) -> FollowedStep:
         """The step after `knot`, sampled at `times` (k,) s."""
         begin = to_seconds(knot.stamp - self._start)
-        samples = self.motion.sample(begin + times)
+        samples = self._samples(knot, begin + times)
         wanted = self.path.goal.positions(begin + times)
         tool = tool_positions(self._solver.model, samples.configuration)
         gaps = np.linalg.norm(tool - wanted, axis=1)

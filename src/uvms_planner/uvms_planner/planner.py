@@ -9,22 +9,22 @@ from uvms_core.end_effector_path import PathSample
 from uvms_core.errors import SignalError
 from uvms_core.signals import (
     Array,
+    DisturbanceBudget,
     JointGoal,
     JointStates,
     Odometry,
     PathGoal,
-    Payload,
     Reference,
     to_nanoseconds,
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import end_effector
 from uvms_dynamics.kernels.rotations import matrix_to_quat
-from uvms_dynamics.payload import LoadedModel
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
 from uvms_planner.joint_motion import JointTrajectory
 from uvms_planner.on_path import FollowedStep, OnPath
+from uvms_planner.planned_path import PlannedPath
 from uvms_planner.projection import tool_pose
 from uvms_planner.proposal import Progress, Proposal, silent
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics, why_not
@@ -53,7 +53,6 @@ class MotionPlanner:
         self._config = config
         self._joint_names = vehicle.joint_names
         self._solver = StepSolver(vehicle, config, seed)
-        self._loaded = LoadedModel(self._solver.model)
         self._step = to_nanoseconds(config.step_s)
         self._times = _sample_times(config)
         self._tick: int | None = None
@@ -65,10 +64,10 @@ class MotionPlanner:
         self._max_planned_error = 0.0
         self._diagnostics: StepDiagnostics | None = None
 
-    def hold(self, payload: Payload | None) -> None:
-        """Plan from now on with what the gripper holds; None for nothing."""
-        if self._loaded.take(payload):
-            self._solver.model = self._loaded.model
+    def inform(self, budget: DisturbanceBudget) -> None:
+        """Plan from now on with what the gripper holds and what the thrusters have left."""
+        if self._solver.take(budget) and isinstance(self._goal, PlannedPath):
+            self._goal.reconsider()
 
     def accept(self, goal: PathGoal | JointGoal, progress: Progress = silent) -> None:
         """Begin a goal with the first segment that is not planned yet, or once at rest.

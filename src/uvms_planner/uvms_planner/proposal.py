@@ -46,6 +46,11 @@ class Proposal:
         quaternion = matrix_to_quat(rotation)
         config = self._solver.config
         check_start(goal, position, quaternion, config)
+        if len(goal.tool_axis):
+            raise GoalRejected(
+                "path: a tool_axis that points somewhere is not followed yet; give orientations, or"
+                " none"
+            )
         return JoinedPath(EndEffectorPath(goal), position, quaternion, config.approach_s)
 
     def work(self, progress: Progress) -> None:

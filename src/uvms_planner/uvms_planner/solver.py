@@ -10,11 +10,14 @@ import numpy as np
 
 from uvms_core.end_effector_path import PathSample
 from uvms_core.plugin import create
-from uvms_core.signals import Array
+from uvms_core.signals import Array, DisturbanceBudget
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
+from uvms_dynamics.geometry import build_geometry
 from uvms_dynamics.kernels.rotations import quat_to_matrix
+from uvms_dynamics.payload import LoadedModel
 from uvms_planner.choice import Choice
+from uvms_planner.clearance import clearance_margins
 from uvms_planner.config import PlannerConfig
 from uvms_planner.constraints import free_attitude
 from uvms_planner.exceeded import limits_exceeded
@@ -24,24 +27,53 @@ from uvms_planner.joined_path import JoinedPath
 from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScales
 from uvms_planner.problem import VEHICLE, StepProblem
 from uvms_planner.segment import Knot
-from uvms_planner.whole_path import PathPlan, PathProblem, Posture, ToolPath
+from uvms_planner.whole_path import PathPlan, PathProblem, Posture, Surroundings, ToolPath
 from uvms_planner.whole_path.solve import Progress
+from uvms_planner.whole_path.surroundings import surroundings
+
+NOTICEABLE = 0.1
+"""Change of a thruster's effectiveness from which on it is planned with."""
 
 
 class StepSolver:
     """Chooses the increment of the configuration for each step by the method of `config`."""
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int):
-        self.model: Model = build_model(vehicle)
+        self._loaded = LoadedModel(build_model(vehicle))
         self.joints = JointLimits.of(vehicle)
-        self.motion_limits = MotionLimits.of(vehicle, self.model, config.limits)
+        self.motion_limits = MotionLimits.of(vehicle, self._loaded.model, config.limits)
         self.limits = StepLimits.of(self.motion_limits, config.step_s)
         self._scales = StepScales.of(vehicle, config)
         self.config = config
+        self._vehicle, self._health = vehicle, np.ones(len(vehicle.thrusters))
+        self._geometry = build_geometry(vehicle, config.obstacles)
+        self._margins = clearance_margins(config.clearance, vehicle, self._geometry)
+        self.around = self._surroundings()
         self.steps_beyond_limits = 0
         self._method: StepMethod = create(config, vehicle, seed)
         self._readiness = self._method.readiness(_readiness(self._scales, config))
         self._motion_weights = _motion_weights(len(self.limits.reach), config)
+
+    @property
+    def model(self) -> Model:
+        """The vehicle's table, with the payload that is held."""
+        return self._loaded.model
+
+    def take(self, budget: DisturbanceBudget) -> bool:
+        """Plan from now on with the payload and the thrusters of a budget; True if they are new.
+
+        Thrusters count from a change by `NOTICEABLE` on, as their estimate never rests.
+        """
+        changed = self._loaded.take(budget.payload)
+        health = self._health if budget.thrusters is None else budget.thrusters.effectiveness
+        if np.abs(health - self._health).max(initial=0.0) >= NOTICEABLE:
+            self._health = np.clip(health, 0.0, 1.0)
+            self.around = self._surroundings()
+            changed = True
+        return changed
+
+    def _surroundings(self) -> Surroundings:
+        return surroundings(self._vehicle, self._geometry, self._margins, health=self._health)
 
     @property
     def size(self) -> int:
@@ -58,11 +90,14 @@ class StepSolver:
 
         Only where `plans_paths`.
         """
-        posture = slice(VEHICLE - 1, None)
-        own = Posture(
-            start.configuration[posture], start.rate[posture], start.acceleration[posture]
+        problem = PathProblem(
+            self.model,
+            ToolPath(path),
+            path.duration,
+            posture_of(start),
+            self.motion_limits,
+            around=self.around,
         )
-        problem = PathProblem(self.model, ToolPath(path), path.duration, own, self.motion_limits)
         plan: PathPlan = self._method.plan_path(problem, progress)  # type: ignore[attr-defined]
         return plan
 
@@ -138,6 +173,12 @@ class StepSolver:
     def free_attitude(self, configuration: Array) -> tuple[float, float]:
         """Roll and pitch in rad that the vehicle takes up freely in `configuration` (m,)."""
         return free_attitude(self.model, configuration[VEHICLE:].copy())
+
+
+def posture_of(knot: Knot) -> Posture:
+    """Yaw and joints of a knot."""
+    own = slice(VEHICLE - 1, None)
+    return Posture(knot.configuration[own], knot.rate[own], knot.acceleration[own])
 
 
 def _readiness(scales: StepScales, config: PlannerConfig) -> Array:
