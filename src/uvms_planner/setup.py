@@ -22,7 +22,7 @@ setup(
         "uvms_core",
         "uvms_dynamics",
     ],
-    extras_require={"test": ["hypothesis", "pytest"]},
+    extras_require={"test": ["hypothesis", "pytest", "quadprog"]},
     zip_safe=False,
     entry_points={
         "console_scripts": [
