@@ -1,4 +1,4 @@
-"""Paths of the end effector that whole-path plans are measured on, from the manipulation's start."""
+"""Paths of the end effector that whole-path plans are measured on."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Plans over whole paths: self-disturbance against a frozen arm and many starts, time, and limits."""
+"""Plans over whole paths: against a frozen arm and many starts; time, growth and limits."""
 
 import time
 from collections.abc import Iterator
