@@ -24,7 +24,6 @@ from uvms_planner.whole_path.sample import (
 from uvms_planner.whole_path.spline import DEGREE
 
 FUNCTIONS = DEGREE + 1
-NEAR = 0.5  # share of a thruster's limit from which on its derivatives count
 
 
 class Grid(NamedTuple):
@@ -42,6 +41,7 @@ class Bounds(NamedTuple):
     lower: Array  # (v,)
     upper: Array  # (v,)
     scale: Array  # (v,)
+    floor: Array  # (v,) below which a value is as good as there
     price: Array  # (v,) of breaking it, relative to that of a limit of the posture
 
 
@@ -109,7 +109,7 @@ def _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, v
     for k in range(WRENCHES):
         total += 0.5 * values[k] ** 2
     for j in range(bounds.lower.shape[0]):
-        v = values[WRENCHES + j]
+        v = max(values[WRENCHES + j], bounds.floor[j])
         if bounds.upper[j] < np.inf:
             total += penalty((v - bounds.upper[j]) / bounds.scale[j], mu, rho * bounds.price[j])[0]
         if bounds.lower[j] > -np.inf:
@@ -213,6 +213,8 @@ def _local(bounds, wishes, mu, rho, memory, i, weight, motion, values, jacobian,
         v, scale = values[WRENCHES + j], bounds.scale[j]
         slope, curvature = 0.0, 0.0
         price = rho * bounds.price[j]
+        if v < bounds.floor[j]:
+            continue
         if bounds.upper[j] < np.inf:
             z, c = linearised((v - bounds.upper[j]) / scale, mu, price, memory, i, j, 0)
             slope, curvature = z / scale, c / scale**2
@@ -264,7 +266,7 @@ def _spread(grid, i, matrix, vector, half, band, gradient):
 def _near_a_limit(around, bounds, values):
     """Whether a thruster's share is so great that its derivatives count."""
     for k in range(THRUST, THRUST + around.shares.shape[0]):
-        if abs(values[k]) > NEAR * bounds.upper[k - WRENCHES]:
+        if values[k] > bounds.floor[k - WRENCHES]:
             return True
     return False
 

@@ -174,7 +174,7 @@ def _thrust_shares(model, shares, current, motion, nu, nu_dot, out):
         total = 0.0
         for j in range(6):
             total += shares[k, j] * needed[j]
-        out[THRUST + k] = total
+        out[THRUST + k] = abs(total)
 
 
 @inner

@@ -14,6 +14,7 @@ from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, TURN, WRE
 
 BEYOND_PRICE = 1e-3
 """Of the free attitude where the start is beyond it: no joint is overtaxed to come back."""
+SLIGHT = 0.5  # share of a thruster's limit below which a plan need not care
 CLOSER_M = 1e-4  # than at the start, for rounding
 CLEARANCE_M = 0.1  # m, what counts as one share of a clearance
 AXES = ("x", "y", "z")
@@ -33,13 +34,14 @@ def sampled_bounds(problem: PathProblem, tight: float = 1.0) -> Bounds:
     upper[THRUST - WRENCHES : clear] = 1.0
     scale, price = np.where(np.isfinite(upper), upper, 1.0), np.ones(size)
     upper *= tight
-    lower = -upper
+    lower, floor = -upper, np.full(size, -np.inf)
+    lower[THRUST - WRENCHES : clear], floor[THRUST - WRENCHES : clear] = -np.inf, SLIGHT
     lower[at : at + 3], upper[at : at + 3] = limits.lower[:3], limits.upper[:3]
     lower[clear:] = np.minimum(around.margins, _clearances_at_start(problem))
     scale[clear:] = CLEARANCE_M
     if not starts_level(problem):
         price[roll : roll + 2] = BEYOND_PRICE
-    return Bounds(lower, upper, scale, price)
+    return Bounds(lower, upper, scale, floor, price)
 
 
 def value_names(problem: PathProblem) -> list[str]:

@@ -51,7 +51,7 @@ def search(discrete: Discrete, seed: int, config: SearchConfig | None = None) ->
     config = config or SearchConfig()
     rng = generator(seed, "whole path")
     lower, upper = _ranges(discrete, config)
-    genes = _first_generation(discrete, rng, config)
+    genes = first_generation(discrete, rng, config)
     costs = np.array([_cost(discrete, each, config) for each in genes])
     for _ in range(config.generations):
         children = [_child(genes, costs, rng, config) for _ in range(len(genes) - config.elite)]
@@ -71,7 +71,7 @@ def _ranges(discrete: Discrete, config: SearchConfig) -> tuple[Array, Array]:
     return lower, upper
 
 
-def _first_generation(discrete: Discrete, rng, config: SearchConfig) -> Array:
+def first_generation(discrete: Discrete, rng, config: SearchConfig) -> Array:
     """Half take up a posture for good, half go on from one to the next."""
     lower, upper = _ranges(discrete, config)
     start, size = discrete.problem.start.value, len(lower)

@@ -1,0 +1,80 @@
+"""Paths of the end effector that whole-path plans are measured on."""
+
+import numpy as np
+
+from uvms_bringup.scenario import load_scenario
+from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.rng import generator
+from uvms_dynamics import build_model
+from uvms_dynamics.geometry import build_geometry
+from uvms_dynamics.simulation.plant.config import initial_joints
+from uvms_planner.clearance import clearance_margins
+from uvms_planner.limits import MotionLimits
+from uvms_planner.whole_path import PathPlan, PathProblem, Posture, ToolPath, surroundings
+from uvms_planner.whole_path.discrete import discretise
+from uvms_planner.whole_path.newton import solve_on_knots
+from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
+from uvms_planner.whole_path.search import SearchConfig, first_generation, postures_of
+from uvms_planner.whole_path.solve import FULL, ROUGH
+
+_PAPER_60 = (
+    "{phases: [{duration_s: 20, to_m: [0, 0, 0.35]},"
+    " {duration_s: 20, to_m: [0, 0, 0.15], bulge_m: [0.1, 0, 0]},"
+    " {duration_s: 20, to_m: [0, 0, 0], bulge_m: [0, 0.1, 0]}]}"
+)
+_CIRCLE = "{{circle: {{radius_m: 0.3, plane: {}, turns: 2, period_s: 60}}}}"
+_LINE = "{{line: {{to_m: [{}, 0, 0], duration_s: 120}}}}"
+PATHS: dict[str, tuple[str, str | None]] = {
+    "paper_900": ("reference_auv", None),
+    "paper_60": ("reference_auv", _PAPER_60),
+    "circle_xoz": ("reference_auv", _CIRCLE.format("XOZ")),
+    "circle_horizontal": ("reference_auv", _CIRCLE.format("XOY")),
+    "circle_yoz": ("reference_auv", _CIRCLE.format("YOZ")),
+    "line_astern": ("reference_auv", _LINE.format(-3)),
+    "line_ahead": ("reference_auv", _LINE.format(3)),
+    "bluerov2_circle_xoz": ("bluerov2_alpha5", _CIRCLE.format("XOZ")),
+    "bluerov2_line_ahead": ("bluerov2_alpha5", _LINE.format(3)),
+    "bluerov2_paper_60": ("bluerov2_alpha5", _PAPER_60),
+}
+"""Vehicle and `goal.path`; none: the scenario's own, the paper's Fig. 9."""
+
+
+def problem_of(name: str) -> PathProblem:
+    """One of `PATHS` from the scenario's start, with every limit."""
+    vehicle_name, path = PATHS[name]
+    changes = [f"vehicle={vehicle_name}", *([f"goal.path={path}"] if path else [])]
+    scenario = load_scenario("manipulation", changes)
+    vehicle, config = scenario.load_vehicle(), scenario.planner
+    model, geometry = build_model(vehicle), build_geometry(vehicle)
+    tool = ToolPath(EndEffectorPath(scenario.goal.build(vehicle, scenario.plant)))
+    start = np.concatenate([[0.0], initial_joints(vehicle, scenario.plant)])
+    margins = clearance_margins(config.clearance, vehicle, geometry)
+    return PathProblem(
+        model, tool, tool.duration, Posture.at_rest(start),
+        MotionLimits.of(vehicle, model, config.limits),
+        around=surroundings(vehicle, geometry, margins),
+    )  # fmt: skip
+
+
+def held(problem: PathProblem) -> PathPlan:
+    """The plan that leaves the posture as it is."""
+    discrete = discretise(problem, coarse_breaks(problem))
+    posture = np.tile(problem.start.value, (len(discrete.grid.numbers), 1))
+    return PathPlan(problem, discrete.knots, posture, 0)
+
+
+def best_of_starts(problem: PathProblem, count: int) -> float:
+    """J of the best of the optima near `count` random postures and ways between some."""
+    coarse = discretise(problem, coarse_breaks(problem))
+    fine = discretise(problem, fine_breaks(coarse_breaks(problem)))
+    config = SearchConfig(population=count)
+    best = min(
+        (
+            solve_on_knots(coarse, postures_of(coarse, genes), ROUGH)
+            for genes in first_generation(coarse, generator(1, "starts"), config)
+        ),
+        key=lambda solution: solution.cost,
+    )
+    found = solve_on_knots(fine, fine.taken_from(coarse.knots, best.coefficients), FULL)
+    plan = PathPlan(problem, fine.knots, found.coefficients, found.iterations)
+    return plan.report.disturbance if plan.report.feasible else np.inf

@@ -1,0 +1,57 @@
+"""Windows of a path, planned one after the other."""
+
+from itertools import pairwise
+
+import numpy as np
+from whole_path_rig import CIRCLE, problem_of
+
+from uvms_planner.segment import tool_positions
+from uvms_planner.whole_path import PathWindow, Posture, solve
+
+STEP_S = 0.5
+
+
+def driven(window: PathWindow, start: Posture, until: float):
+    """The plans of all windows, each begun where the one before is `STEP_S` later."""
+    plans, last = [], None
+    for begin in np.arange(0.0, until, STEP_S):
+        last = window.solve(begin, start, last)
+        plans.append(last)
+        start = Posture(*last.posture(np.array([begin + STEP_S]))[0])
+    return plans
+
+
+def total(plans) -> float:
+    times = np.linspace(0.0, STEP_S, 26)
+    return sum(each.plan.report_at(times).disturbance for each in plans)
+
+
+def test_windows_follow_the_whole_plan_at_its_cost():
+    problem = problem_of(CIRCLE)
+    whole = solve(problem)
+    window = PathWindow(problem.model, problem.tool, problem.limits, whole)
+    plans = driven(window, problem.start, problem.duration)
+    assert total(plans) < 1.1 * whole.report.disturbance
+    for before, after in pairwise(plans):
+        seam = np.array([after.begin])
+        np.testing.assert_allclose(before.posture(seam), after.posture(seam), atol=1e-9)
+
+
+def test_the_tool_is_on_its_path_in_every_window():
+    problem = problem_of(CIRCLE)
+    window = PathWindow(problem.model, problem.tool, problem.limits)
+    for each in driven(window, problem.start, 5.0):
+        times = np.linspace(0.0, STEP_S, 11)
+        tool = tool_positions(problem.model, each.plan.sample(times).configuration)
+        wanted = problem.target(each.begin + times).position
+        assert np.abs(tool - wanted).max() < 1e-9
+
+
+def test_without_a_whole_plan_limits_are_kept_and_it_is_better_than_a_frozen_arm():
+    problem = problem_of(CIRCLE)
+    window = PathWindow(problem.model, problem.tool, problem.limits)
+    plans = driven(window, problem.start, problem.duration)
+    times = np.linspace(0.0, STEP_S, 501)
+    worst = max(each.plan.report_at(times).worst.share for each in plans)
+    assert worst <= 1.001
+    assert total(plans) < 3.0  # 15 with the arm frozen
