@@ -20,7 +20,7 @@ PRINTED = tuple(
 )
 REPORTED = ("planner.limits.strict=false",)
 """Steps beyond the accelerations are taken, as none of the three gets through without."""
-ROWS = {"paper": (), "genetic": PRINTED, "sqp": PRINTED}
+ROWS = {"paper": (), "genetic_steps": PRINTED, "sqp": PRINTED}
 DETERMINISTIC = ("sqp",)
 SEEDS = 5
 UNITS = {"force": "N", "moment": "N m", "acceleration": "deg/s^2", "beyond": "1"}

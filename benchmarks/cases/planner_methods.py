@@ -8,8 +8,8 @@ from method_paths import PATHS, Followed, follow
 from method_steps import OWN, PRINTED, Result, measured, states
 from metrics import Metric
 
-METHODS = ("paper", "genetic", "sqp", "least_norm", "arm_only", "vehicle_only")
-SEARCHES = ("paper", "genetic", "sqp")
+METHODS = ("paper", "genetic_steps", "sqp", "least_norm", "arm_only", "vehicle_only")
+SEARCHES = ("paper", "genetic_steps", "sqp")
 SMALL = {"paper": {"population": 20, "generations": 20}}
 LARGE = {"paper": {"population": 400, "generations": 400}}
 """Of `paper` only the bits are printed: what more or less effort gives."""

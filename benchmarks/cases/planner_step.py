@@ -12,7 +12,9 @@ REFERENCE = "the {step:g} s between two steps, one core"
 
 def measure(full: bool) -> Iterator[Metric]:
     """Steps along the path of Fig. 9 while moving: the first minute."""
-    planned: Planned = plan("genetic", seconds=300.0 if full else 60.0, clock=time.perf_counter)
+    planned: Planned = plan(
+        "genetic_steps", seconds=300.0 if full else 60.0, clock=time.perf_counter
+    )
     seconds = np.array(planned.step_seconds)
     evaluations = np.array(planned.evaluations)
     yield Metric("planner_evaluations", float(np.median(evaluations / seconds)), "1/s")

@@ -33,6 +33,7 @@ setup(
         ],
         "uvms.planners": [
             "genetic = uvms_planner.methods.genetic:Genetic",
+            "genetic_steps = uvms_planner.methods.genetic:GeneticSteps",
             "paper = uvms_planner.methods.paper:Paper",
             "sqp = uvms_planner.methods.sqp:Sqp",
             "least_norm = uvms_planner.methods.least_norm:LeastNorm",

@@ -23,7 +23,7 @@ def reference_vehicle() -> Vehicle:
 
 
 def solver_of(vehicle: Vehicle | None = None, seed: int = 1, **changes) -> StepSolver:
-    config = PlannerConfig.model_validate(changes)
+    config = PlannerConfig.model_validate({"method": "genetic_steps", **changes})
     return StepSolver(vehicle or reference_vehicle(), config, seed)
 
 

@@ -10,7 +10,7 @@ from uvms_planner import PathSpec
 from uvms_planner.exceeded import limits_exceeded
 
 JOINTS = ("swing", "shoulder", "elbow", "wrist")
-METHODS = ("genetic", "least_norm", "sqp")
+METHODS = ("genetic_steps", "least_norm", "sqp")
 SUDDEN = [0.015, 0.0, 0.0]  # m in a first step: within the rates, not the accelerations
 
 

@@ -61,7 +61,7 @@ def test_the_pose_that_is_held_is_level():
     assert np.allclose(step.references[0].position, [1.0, 2.0, 3.0])
 
 
-@pytest.mark.parametrize("method", ["genetic", "least_norm", "arm_only"])
+@pytest.mark.parametrize("method", ["genetic", "genetic_steps", "least_norm", "arm_only"])
 def test_references_are_smooth_within_limits_and_on_the_path_between_the_knots(method):
     run = drive(method=method)
     result, path, start = followed(run, short_figure_9())
@@ -127,7 +127,7 @@ def test_with_the_arm_alone_the_vehicle_holds_still():
 
 def test_the_same_seed_plans_the_same_and_another_does_not():
     def plan(seed):
-        run = drive(seed=seed, genetic={"refinements": 0, "generations": 4})
+        run = drive(seed=seed, method="genetic_steps", genetic={"refinements": 0, "generations": 4})
         run.planner.accept(short_figure_9().goal(*run.planner.end_effector))
         run.advance(10)
         return run.joined("q")

@@ -218,9 +218,10 @@ class PlannerConfig(PluginConfig):
 
     method: str = Field(
         "genetic",
-        description="how each step is chosen: genetic (the paper's, improved), paper (as printed),"
-        " sqp (sequential quadratic programming), least_norm (weighted pseudo-inverse), arm_only,"
-        " vehicle_only (the arm keeps its posture), that of an installed package, or a class as"
+        description="how paths are planned: genetic (the whole path before it begins); or step by"
+        " step: genetic_steps (the paper's, improved), paper (as printed), sqp (sequential"
+        " quadratic programming), least_norm (weighted pseudo-inverse), arm_only, vehicle_only (the"
+        " arm keeps its posture); that of an installed package, or a class as"
         " my_package.my_module:MyMethod",
     )
     step_s: float = Field(0.5, gt=0, le=10.0, description="s, one planner step")

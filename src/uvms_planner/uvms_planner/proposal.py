@@ -16,7 +16,7 @@ from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 from uvms_planner.segment import Knot
 from uvms_planner.solver import StepSolver
-from uvms_planner.whole_path import PathPlan
+from uvms_planner.whole_path import LimitShare, PathPlan, PathProblem, slow_down
 
 Progress = Callable[[float, str], None]
 
@@ -64,9 +64,27 @@ class Proposal:
             step = self._solver.config.step_s
             check_reachable(self._path, self._solver, self._knot.configuration, step)
             return
-        self.plan = self._solver.plan_path(self._path, self._knot, progress)
+        problem = self._solver.path_problem(self._path, self._knot)
+        self.plan = self._solver.plan_path(problem, progress)
         if not self.plan.report.feasible:
-            raise GoalRejected(f"path: {self.plan.report.worst}")
+            self.plan = self._slower(problem, self.plan.report.worst, progress)
+
+    def _slower(self, problem: PathProblem, worst: LimitShare, progress: Progress) -> PathPlan:
+        """The plan of the path as slowly as it must be, where the goal allows that."""
+        slower = slow_down(problem, progress=progress)
+        if slower is None:
+            raise GoalRejected(f"path: it cannot be followed, however slowly; {worst}")
+        allowed = getattr(self._goal, "time_scale_max", 1.0)
+        if slower.factor > allowed:
+            raise GoalRejected(
+                f"path too fast: {worst}; {slower.factor:.3g} times slower it can be followed, and"
+                f" the goal's time_scale_max is {allowed:g}"
+            )
+        self._path = self._joined(self._goal.slowed(slower.factor))
+        plan = self._solver.plan_path(self._solver.path_problem(self._path, self._knot), progress)
+        if not plan.report.feasible:
+            raise GoalRejected(f"path: {slower.factor:.3g} times slower; {plan.report.worst}")
+        return plan
 
     def motion_from(self, knot: Knot) -> OnPath | JointTrajectory:
         """The motion from a knot at rest in the configuration that was planned from."""

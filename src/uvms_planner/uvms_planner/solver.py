@@ -85,12 +85,9 @@ class StepSolver:
         """Whether the method plans whole paths before they begin."""
         return hasattr(self._method, "plan_path")
 
-    def plan_path(self, path: JoinedPath, start: Knot, progress: Progress) -> PathPlan:
-        """The method's plan over a whole path, from a knot; its report says what limits it keeps.
-
-        Only where `plans_paths`.
-        """
-        problem = PathProblem(
+    def path_problem(self, path: JoinedPath, start: Knot) -> PathProblem:
+        """A whole path from a knot, with the limits, and with what stands around, as known now."""
+        return PathProblem(
             self.model,
             ToolPath(path),
             path.duration,
@@ -98,6 +95,9 @@ class StepSolver:
             self.motion_limits,
             around=self.around,
         )
+
+    def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
+        """The method's plan over a whole path; only where `plans_paths`."""
         plan: PathPlan = self._method.plan_path(problem, progress)  # type: ignore[attr-defined]
         return plan
 

@@ -1,4 +1,7 @@
-"""Planner method `genetic`: the paper's search for the least self-disturbance, Fig. 3."""
+"""Planner methods `genetic` and `genetic_steps`: the paper's search for the least disturbance."""
+
+from collections.abc import Mapping
+from typing import ClassVar
 
 import numpy as np
 
@@ -15,8 +18,11 @@ from uvms_planner.whole_path import PathPlan, PathProblem, solve
 from uvms_planner.whole_path.solve import Progress
 
 
-class Genetic(StepMethod):
-    """Genetic algorithm on the increments, with the previous motion among its first individuals."""
+class GeneticSteps(StepMethod):
+    """Genetic algorithm on the increments, with the previous motion among its first individuals.
+
+    Fig. 3, step by step; what is added to it is in docs/paper-planner.md.
+    """
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:
         self._model = build_model(vehicle)
@@ -37,6 +43,15 @@ class Genetic(StepMethod):
         return Choice(
             found, increment, distance, angle, violation, cost, evaluations, feasible, discarded
         )
+
+
+class Genetic(GeneticSteps):
+    """The whole path is planned before it begins: the genes are postures along all of it."""
+
+    ignores: ClassVar[Mapping[str, str]] = {
+        "fitness": "methods that plan step by step, such as genetic_steps",
+        "genetic": "the method genetic_steps",
+    }
 
     def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
         """The best plan over a whole path: a search for the basin, a solver for its bottom."""

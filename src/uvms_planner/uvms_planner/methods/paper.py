@@ -31,7 +31,7 @@ class Paper(StepMethod):
 
     ignores: ClassVar[Mapping[str, str]] = {
         "fitness": "the other methods; this one has eq. (18) alone",
-        "genetic": "the method genetic; this one has paper",
+        "genetic": "the method genetic_steps; this one has paper",
     }
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:

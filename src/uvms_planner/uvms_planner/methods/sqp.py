@@ -19,7 +19,7 @@ class Sqp(StepMethod):
     """The step of least cost, from the previous motion or from rest; without random numbers."""
 
     ignores: ClassVar[Mapping[str, str]] = {
-        "genetic": "the method genetic; this one has sqp",
+        "genetic": "the method genetic_steps; this one has sqp",
         "paper": "the method paper; this one has sqp",
     }
 
