@@ -129,6 +129,14 @@ def jerk_for(bandwidth: float, variances: Array, interval_s: float) -> float:
     return float(min(bandwidth**3 * angle, bandwidth**2 * rate))
 
 
+def jerk_of_velocity(noise: Array, interval_s: float) -> Array:
+    """Jerks by rule (k,) of filters that read a velocity with this white noise (k,), std.
+
+    That of the bandwidth B = `RADIANS_OF_PERIOD` / T at the interval T: B^2 sigma sqrt(T).
+    """
+    return (RADIANS_OF_PERIOD / interval_s) ** 2 * noise * np.sqrt(interval_s)
+
+
 def loop_delay(vehicle: Vehicle, period_s: float) -> float:
     """Delay, s, between a state and the wrench that answers it: thruster lag, hold and computation.
 

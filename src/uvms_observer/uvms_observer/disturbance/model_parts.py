@@ -4,7 +4,7 @@ import numpy as np
 
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import Model, coupling_wrench, restoring_wrench
-from uvms_dynamics.joint_prediction import RADIANS_OF_PERIOD, JointMotion
+from uvms_dynamics.joint_prediction import JointMotion, jerk_of_velocity
 from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.tracking import follow, transition, walk
 
@@ -18,7 +18,7 @@ class ModelParts:
     Args:
         noise: (2,) of the linear and angular velocity, standard deviations in m/s and rad/s.
         jerks: (2,) changes of the linear and angular acceleration within a second, m/s^3, rad/s^3;
-            one that is None by rule: that of the bandwidth `RADIANS_OF_PERIOD` over the period.
+            one that is None by rule (`jerk_of_velocity`).
     """
 
     def __init__(self, noise: Array, jerks: tuple[float | None, float | None]) -> None:
@@ -54,8 +54,8 @@ class ModelParts:
         return self._x[1]
 
     def _squares(self, dt: float) -> Array:
-        """Squared jerks (2,) at intervals of dt s: B^2 sigma sqrt(dt) for the bandwidth B."""
-        rule = (RADIANS_OF_PERIOD / dt) ** 2 * self._noise * np.sqrt(dt)
+        """Squared jerks (2,) at intervals of dt s."""
+        rule = jerk_of_velocity(self._noise, dt)
         given = [own if jerk is None else jerk for jerk, own in zip(self._jerks, rule, strict=True)]
         return np.square(given)
 
