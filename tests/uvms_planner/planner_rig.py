@@ -15,6 +15,13 @@ from uvms_planner.solver import StepSolver
 
 START_DEG = (0.0, 10.0, 115.0, 0.0)
 START = np.concatenate([[0.0, 0.0, 10.0, 0.0], np.deg2rad(START_DEG)])
+CALM = {
+    "translation_rate_m_s": 0.05,
+    "translation_acceleration_m_s2": 0.01,
+    "yaw_rate_deg_s": 1.0,
+    "yaw_acceleration_deg_s2": 0.5,
+}
+"""Limits that a vehicle with strong thrusters is far within."""
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 
 

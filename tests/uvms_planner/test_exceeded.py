@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from planner_rig import START, drive, solver_of, target_near
+from planner_rig import CALM, START, drive, solver_of, target_near
 
 from uvms_analysis.counters import COUNTED
 from uvms_core.diagnostics import STEPS_BEYOND_LIMITS
@@ -19,7 +19,7 @@ def sudden(solver):
 
 
 def test_a_step_within_the_limits_exceeds_none():
-    solver = solver_of()
+    solver = solver_of(limits=CALM)
     problem = solver.problem(START, np.zeros(8), target_near(solver, START, [0.0, 0.0, 1e-3]))
     choice = solver.choose(problem, 0)
     assert choice.valid
@@ -29,7 +29,7 @@ def test_a_step_within_the_limits_exceeds_none():
 
 
 def test_each_acceleration_is_named_with_value_and_bound_the_worst_first():
-    solver = solver_of()
+    solver = solver_of(limits=CALM)
     problem = sudden(solver)
     increment = np.zeros(8)
     increment[0], increment[5] = 2.0 * problem.jump[0], -3.0 * problem.jump[5]
@@ -44,7 +44,7 @@ def test_each_acceleration_is_named_with_value_and_bound_the_worst_first():
 
 
 def test_a_speed_that_cannot_stop_before_the_end_of_the_range_is_named():
-    solver, configuration = solver_of(), START.copy()
+    solver, configuration = solver_of(limits=CALM), START.copy()
     configuration[6] = solver.limits.upper[6] - 1e-3
     problem = solver.problem(
         configuration, np.zeros(8), target_near(solver, configuration, np.zeros(3))
@@ -59,7 +59,7 @@ def test_a_speed_that_cannot_stop_before_the_end_of_the_range_is_named():
 
 @pytest.mark.parametrize("method", METHODS)
 def test_where_limits_are_strict_the_step_is_refused_with_the_limits(method):
-    solver = solver_of(method=method)
+    solver = solver_of(method=method, limits=CALM)
     choice = solver.choose(sudden(solver), 0)
     assert not choice.valid
     assert choice.distance < 1e-3
@@ -70,7 +70,7 @@ def test_where_limits_are_strict_the_step_is_refused_with_the_limits(method):
 
 @pytest.mark.parametrize("method", METHODS)
 def test_where_they_are_not_it_is_taken_reported_and_counted(method):
-    solver = solver_of(method=method, limits={"strict": False})
+    solver = solver_of(method=method, limits={**CALM, "strict": False})
     problem = sudden(solver)
     choice = solver.choose(problem, 0)
     assert choice.valid
@@ -81,7 +81,7 @@ def test_where_they_are_not_it_is_taken_reported_and_counted(method):
 
 
 def test_what_is_out_of_reach_at_any_acceleration_is_not_called_a_limit():
-    solver = solver_of(limits={"strict": False})
+    solver = solver_of(limits={**CALM, "strict": False})
     problem = solver.problem(START, np.zeros(8), target_near(solver, START, [0.5, 0.0, 0.0]))
     choice = solver.choose(problem, 0)
     assert not choice.valid
@@ -94,7 +94,9 @@ def _hurried(strict):
 
     Only the vehicle can follow it: x'' is that of the quintic, 10 / sqrt(3) * 0.2 / 36 m/s^2.
     """
-    run = drive(method="vehicle_only", limits={"strict": strict, "translation_rate_m_s": 0.1})
+    run = drive(
+        method="vehicle_only", limits={**CALM, "strict": strict, "translation_rate_m_s": 0.1}
+    )
     spec = PathSpec.model_validate({"line": {"to_m": [0.2, 0.0, 0.0], "duration_s": 6.0}})
     run.planner.accept(spec.goal(*run.planner.end_effector))
     return run, run.until_finished()

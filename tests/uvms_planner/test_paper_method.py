@@ -6,7 +6,15 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from planner_rig import START, drive, reference_vehicle, short_figure_9, solver_of, target_near
+from planner_rig import (
+    CALM,
+    START,
+    drive,
+    reference_vehicle,
+    short_figure_9,
+    solver_of,
+    target_near,
+)
 from scipy.stats import chisquare, geom
 
 from uvms_core.errors import ConfigError
@@ -18,7 +26,7 @@ from uvms_planner.methods.paper import printed_settings
 from uvms_planner.paper_evolution import decode_plain, gene_lengths, mutate_by_gaps, reproduce
 from uvms_planner.projection import tool_pose
 
-SOLVER = solver_of(method="paper")
+SOLVER = solver_of(method="paper", limits=CALM)
 CONFIG = PlannerConfig().paper
 SETTINGS = printed_settings(SOLVER.model, SOLVER.joints, CONFIG)
 STILL = np.zeros(8)
@@ -211,7 +219,7 @@ def test_it_takes_no_other_fitness():
 
 def test_a_path_is_followed_within_e():
     few = {"population": 40, "generations": 10}
-    run = drive(method="paper", paper=few, limits={"strict": False})
+    run = drive(method="paper", paper=few, limits={**CALM, "strict": False})
     run.planner.accept(short_figure_9(10.0, 0.1).goal(*run.planner.end_effector))
     result = run.until_finished()
     assert result.success

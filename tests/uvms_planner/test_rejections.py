@@ -1,5 +1,6 @@
 import contextlib
 import re
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -8,9 +9,10 @@ from hypothesis import strategies as st
 from planner_rig import drive, reference_vehicle, short_figure_9
 from scipy.spatial.transform import Rotation
 
-from uvms_core.signals import JointGoal, PathGoal
+from uvms_core.signals import JointGoal, PathGoal, to_seconds
 from uvms_planner import GoalRejected, MotionPlanner, PlannerConfig
 
+STEPS = "genetic_steps"
 NONE = np.zeros((0, 4))
 RUN = drive()
 TOOL, TURN = RUN.planner.end_effector
@@ -89,8 +91,30 @@ def test_malformed_paths_are_rejected_with_value_and_bound(goal, message):
     assert rejection(goal).startswith(message)
 
 
+def test_a_whole_path_that_is_too_fast_says_which_limit_and_how_much_slower_it_can_be():
+    fast = path((0.0, 10.0), ((0, 0, 0), (3.0, 0, 0)))
+    match = re.fullmatch(
+        r"path too fast: .+: [-\d.]+ at t = [\d.]+ s, allowed [\d.]+; ([\d.]+) times slower it"
+        r" can be followed, and the goal's time_scale_max is 1",
+        rejection(fast),
+    )
+    factor = float(match[1])
+    assert 1.5 < factor < 5.0  # 15/8 of 0.3 m/s where 0.31 are allowed, and what acceleration takes
+    run = drive()
+    run.planner.accept(replace(fast, time_scale_max=1.05 * factor))
+    assert run.until_finished().success
+    assert to_seconds(run.references[-1].stamp) > 10.0 * 0.95 * factor
+
+
+def test_a_whole_path_beyond_the_depth_that_is_allowed_cannot_be_followed_at_any_speed():
+    run = drive(limits={"depth_max_m": 10.3})
+    text = rejection(path((0.0, 400.0), ((0, 0, 0), (0, 0, 3.0))), run)
+    assert text.startswith("path: it cannot be followed, however slowly; z of the vehicle: ")
+    assert text.endswith("allowed 10.3")
+
+
 def test_a_path_that_is_too_fast_says_when_and_by_how_much():
-    text = rejection(path((0.0, 10.0), ((0, 0, 0), (3.0, 0, 0))))
+    text = rejection(path((0.0, 10.0), ((0, 0, 0), (3.0, 0, 0))), drive(method=STEPS))
     match = re.fullmatch(
         r"path too fast: at t = ([\d.]+) s it moves at ([\d.]+) m/s; within the rate limits the end"
         r" effector stays ([\d.]+) m behind, allowed 0.001 m",
@@ -114,14 +138,14 @@ def test_a_point_that_the_arm_alone_cannot_reach_says_how_far_it_is():
 
 
 def test_a_depth_that_the_vehicle_may_not_have_is_out_of_reach():
-    run = drive(limits={"depth_max_m": 10.3})
+    run = drive(method=STEPS, limits={"depth_max_m": 10.3})
     text = rejection(path((0.0, 400.0), ((0, 0, 0), (0, 0, 3.0))), run)
     assert re.match(r"path: at t = [\d.]+ s the nearest reachable point is [\d.]+ m away", text)
 
 
 def test_an_orientation_that_the_arm_cannot_take_is_out_of_reach():
     goal = path((0.0, 200.0), ((0, 0, 0), (0, 0, 0)), pitched(0, 170))
-    text = rejection(goal)
+    text = rejection(goal, drive(method=STEPS))
     match = re.fullmatch(
         r"path: at t = ([\d.]+) s the nearest reachable orientation is ([\d.]+) deg away, allowed"
         r" 0.5 deg",
@@ -132,7 +156,8 @@ def test_an_orientation_that_the_arm_cannot_take_is_out_of_reach():
 
 
 def test_a_turn_that_is_too_fast_says_so():
-    text = rejection(path((0.0, 1.0), ((0, 0, 0), (0, 0, 0)), turned(0, 170)))
+    fast = path((0.0, 1.0), ((0, 0, 0), (0, 0, 0)), turned(0, 170))
+    text = rejection(fast, drive(method=STEPS))
     assert re.fullmatch(
         r"path too fast: at t = [\d.]+ s it moves at 0 m/s; within the rate limits the end effector"
         r" stays [\d.]+ (deg|m) behind, allowed [\d.]+ (deg|m)",

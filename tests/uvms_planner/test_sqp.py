@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from planner_rig import START, six_joint_vehicle, solver_of, stubby_vehicle, target_near
+from planner_rig import CALM, START, six_joint_vehicle, solver_of, stubby_vehicle, target_near
 from scipy.optimize import minimize
 
 from uvms_core.vehicle import load_vehicle
@@ -152,7 +152,7 @@ def test_a_step_without_freedom_is_the_one_that_there_is():
 
 
 def test_what_is_out_of_reach_is_not_valid():
-    solver = solver_of(method="sqp")
+    solver = solver_of(method="sqp", limits=CALM)
     problem = solver.problem(START, np.zeros(8), target_near(solver, START, [0.0, 0.0, 0.5]))
     choice = solver.choose(problem, 0)
     assert not choice.valid

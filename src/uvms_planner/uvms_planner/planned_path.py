@@ -33,11 +33,12 @@ class PlannedPath(OnPath):
     def reconsider(self) -> None:
         """Plan anew from the next step on: the model, or what the thrusters have, has changed."""
         problem = self.motion.problem
+        configuration = self.motion.sample(np.zeros(1)).configuration[0]
         self._last = None
         self._window = PathWindow(
             self._solver.model,
             problem.tool,
-            problem.limits,
+            self._solver.limits_from(configuration),
             self.motion,
             problem.weights,
             self._solver.around,

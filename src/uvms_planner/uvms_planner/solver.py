@@ -35,6 +35,10 @@ NOTICEABLE = 0.1
 """Change of a thruster's effectiveness from which on it is planned with."""
 
 
+MORE_TILT = 1.2
+"""A vehicle that floats beyond its limits may float so many times farther on its way back."""
+
+
 class StepSolver:
     """Chooses the increment of the configuration for each step by the method of `config`."""
 
@@ -92,8 +96,20 @@ class StepSolver:
             ToolPath(path),
             path.duration,
             posture_of(start),
-            self.motion_limits,
+            self.limits_from(start.configuration),
             around=self.around,
+        )
+
+    def limits_from(self, configuration: Array) -> MotionLimits:
+        """The limits of a plan from a configuration (m,).
+
+        Where the vehicle would float beyond the limits of eq. (17) already, it may do so a little
+        farther: nothing is gained by pressing it back faster than the cost does.
+        """
+        roll, pitch = MORE_TILT * np.abs(self.free_attitude(configuration))
+        limits = self.motion_limits
+        return replace(
+            limits, roll_max=max(limits.roll_max, roll), pitch_max=max(limits.pitch_max, pitch)
         )
 
     def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
