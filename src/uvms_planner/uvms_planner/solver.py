@@ -13,7 +13,7 @@ from uvms_core.plugin import create
 from uvms_core.signals import Array, DisturbanceBudget
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
-from uvms_dynamics.geometry import build_geometry
+from uvms_dynamics.geometry import build_geometry, clearances
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.payload import LoadedModel
 from uvms_planner.choice import Choice
@@ -37,6 +37,10 @@ NOTICEABLE = 0.1
 
 MORE_TILT = 1.2
 """A vehicle that floats beyond its limits may float so many times farther on its way back."""
+
+
+CLOSER, CLOSER_M = 0.1, 1e-3
+"""Share of a clearance, and m, by which a pair may come closer that is at its margin already."""
 
 
 class StepSolver:
@@ -97,8 +101,17 @@ class StepSolver:
             path.duration,
             posture_of(start),
             self.limits_from(start.configuration),
-            around=self.around,
+            around=self.around_from(start.configuration),
         )
+
+    def around_from(self, configuration: Array) -> Surroundings:
+        """What a plan from a configuration (m,) must keep clear of.
+
+        Where the start is closer than a margin, or at it, that pair may stay almost as close.
+        """
+        now = clearances(self._geometry, configuration)
+        margins = np.minimum(self.around.margins, now - CLOSER * np.abs(now) - CLOSER_M)
+        return self.around._replace(margins=margins)
 
     def limits_from(self, configuration: Array) -> MotionLimits:
         """The limits of a plan from a configuration (m,).

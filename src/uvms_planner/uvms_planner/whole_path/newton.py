@@ -34,6 +34,11 @@ class Schedule:
         """Steps that it takes at most."""
         return self.steps * (len(self.barriers) - 1) + self.final_steps
 
+    def scaled(self, factor: float) -> "Schedule":
+        """The same for costs that are `factor` times as large."""
+        barriers = tuple(factor * barrier for barrier in self.barriers)
+        return replace(self, barriers=barriers, price=factor * self.price)
+
     def at_price(self, price: float) -> "Schedule":
         """The same with another price."""
         return replace(self, price=price)

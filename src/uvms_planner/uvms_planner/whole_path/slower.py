@@ -10,7 +10,7 @@ from uvms_planner.whole_path.newton import solve_on_knots
 from uvms_planner.whole_path.path_problem import PathProblem, Posture
 from uvms_planner.whole_path.pieces import coarse_breaks
 from uvms_planner.whole_path.plan import PathPlan
-from uvms_planner.whole_path.solve import ROUGH, Progress, solve
+from uvms_planner.whole_path.solve import ROUGH, Progress, posture_held, size_of, solve
 
 SLOWEST = 30.0  # factor beyond which the time is not what keeps a path from being followed
 FINE_ENOUGH = 1.03  # ratio between a factor that is too fast and one that is not
@@ -60,8 +60,8 @@ def slow_down(
 def _possible(problem: PathProblem) -> bool:
     """Whether a plan on the coarse pieces keeps the limits."""
     coarse = discretise(problem, coarse_breaks(problem))
-    held = np.tile(problem.start.value, (len(coarse.grid.numbers), 1))
-    found = solve_on_knots(coarse, held, ROUGH)
+    held = posture_held(coarse)
+    found = solve_on_knots(coarse, held, ROUGH.scaled(size_of(coarse, held)))
     plan = PathPlan(problem, coarse.knots, found.coefficients, found.iterations)
     return plan.report.feasible
 

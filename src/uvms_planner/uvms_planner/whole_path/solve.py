@@ -33,35 +33,58 @@ def solve(
     breaks = coarse_breaks(problem)
     coarse, fine = discretise(problem, breaks), discretise(problem, fine_breaks(breaks))
     progress(0.0, "searching")
-    rough = _rough(coarse, seed, lambda share: progress(0.5 * share, "searching"))
+    held = posture_held(coarse)
+    size = size_of(coarse, held)
+    rough = _rough(coarse, held, seed, size, lambda share: progress(0.5 * share, "searching"))
     progress(0.5, "whole path")
     begin = fine.taken_from(coarse.knots, rough.coefficients)
-    plan = _polished(fine, begin, lambda share: progress(0.5 + 0.5 * share, "whole path"))
+    plan = _polished(fine, begin, size, lambda share: progress(0.5 + 0.5 * share, "whole path"))
     progress(1.0, "whole path")
     return plan
 
 
-def _rough(coarse: Discrete, seed: int, progress: Callable[[float], None]) -> Solution:
-    """The better of the optima near the posture held and near the fittest of the search."""
-    held = np.tile(coarse.problem.start.value, (len(coarse.grid.numbers), 1))
-    first = solve_on_knots(coarse, held, ROUGH, ticker(lambda s: progress(s / 3), ROUGH))
+def posture_held(discrete: Discrete) -> Array:
+    """Coefficients (K, d) of the posture of the start."""
+    return np.tile(discrete.problem.start.value, (len(discrete.grid.numbers), 1))
+
+
+def size_of(discrete: Discrete, held: Array) -> float:
+    """Mean square of the disturbance with the posture held, N^2 and N^2 m^2; at least 1.
+
+    Prices and barriers go by it: what breaks no limit with an arm of 1 kg may not with one of 50.
+    """
+    return max(1.0, discrete.disturbance(discrete.complete(held)) / discrete.problem.duration)
+
+
+def _rough(
+    coarse: Discrete, held: Array, seed: int, size: float, progress: Callable[[float], None]
+) -> Solution:
+    """The better of the optima near the posture held and near the fittest of the search.
+
+    Prices count for disturbances of the mean square `size`, N^2 and N^2 m^2.
+    """
+    rough = ROUGH.scaled(size)
+    first = solve_on_knots(coarse, held, rough, ticker(lambda s: progress(s / 3), rough))
     fittest = search(coarse, seed)
     progress(2 / 3)
-    second = solve_on_knots(coarse, fittest, ROUGH, ticker(lambda s: progress((2 + s) / 3), ROUGH))
+    second = solve_on_knots(coarse, fittest, rough, ticker(lambda s: progress((2 + s) / 3), rough))
     return min(first, second, key=lambda solution: solution.cost)
 
 
-def _polished(discrete: Discrete, begin: Array, progress: Callable[[float], None]) -> PathPlan:
+def _polished(
+    discrete: Discrete, begin: Array, size: float, progress: Callable[[float], None]
+) -> PathPlan:
     """The optimum near `begin` that keeps the limits between the samples as well."""
-    solution = solve_on_knots(discrete, begin, FULL, ticker(progress, FULL))
-    count, price = solution.iterations, FULL.price
+    full, repair = FULL.scaled(size), REPAIR.scaled(size)
+    solution = solve_on_knots(discrete, begin, full, ticker(progress, full))
+    count, price = solution.iterations, full.price
     for _ in range(REPAIRS):
         plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
         excess = plan.report.excess
         if plan.report.feasible or excess.max() > HOPELESS:
             return plan
         discrete, price = discrete.tightened(excess + SPARE), HIGHER * price
-        solution = solve_on_knots(discrete, solution.coefficients, REPAIR.at_price(price))
+        solution = solve_on_knots(discrete, solution.coefficients, repair.at_price(price))
         count += solution.iterations
     return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
 
