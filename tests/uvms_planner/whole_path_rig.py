@@ -46,13 +46,13 @@ def problem_of(path: dict, vehicle: Vehicle | None = None, obstacles=(), **limit
 
 
 def random_path(seed: int) -> dict:
-    """A curve through two to five points, at up to 8 cm/s on average."""
+    """A curve through two to five points, at up to 5 cm/s on average."""
     rng = np.random.default_rng(seed)
     points = np.cumsum(rng.uniform(-0.4, 0.4, (rng.integers(2, 6), 3)), axis=0)
     return {
         "waypoints": {
             "points_m": points.round(3).tolist(),
-            "speeds_m_s": float(rng.uniform(0.01, 0.08)),
+            "speeds_m_s": float(rng.uniform(0.01, 0.05)),
         }
     }
 

@@ -74,7 +74,9 @@ class Proposal:
         slower = slow_down(problem, progress=progress)
         if slower is None:
             raise GoalRejected(f"path: it cannot be followed, however slowly; {worst}")
-        allowed = getattr(self._goal, "time_scale_max", 1.0)
+        if isinstance(self._goal, JointGoal):
+            raise AssertionError("a motion of the joints is no path")
+        allowed = self._goal.time_scale_max
         if slower.factor > allowed:
             raise GoalRejected(
                 f"path too fast: {worst}; {slower.factor:.3g} times slower it can be followed, and"
