@@ -9,6 +9,7 @@ ALONE = ("architecture", "faults", "integration", "ros")
 """Folders with graphs, environments and clocks: one of their tests at a time."""
 
 
+@pytest.hookimpl(tryfirst=True)  # xdist reads the groups in the same hook
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """One group for the folders of `ALONE`; of the others each file, for the sake of fixtures."""
     for item in items:
