@@ -24,11 +24,10 @@ def _domains() -> Iterator[int]:
     mine = []  # the open files hold the locks to the end of the session
     for k in range(100):
         domain = (os.getpid() + k) % 100 + 1
-        lock = open(Path(tempfile.gettempdir()) / f"uvms_tests_domain_{domain}", "w")
         try:
+            lock = open(Path(tempfile.gettempdir()) / f"uvms_tests_domain_{domain}", "w")
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except OSError:
-            lock.close()
+        except OSError:  # another session, or another user, has it
             continue
         mine.append((domain, lock))
         yield domain

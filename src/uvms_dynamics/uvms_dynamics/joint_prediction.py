@@ -24,9 +24,9 @@ from uvms_core.signals import Array, JointStates, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.tracking import VARIANCE_FLOOR, TrackingFilter
 
-RADIANS_OF_PERIOD = 1.0
-"""Bandwidth of the acceleration times the time between two samples, by rule: what is faster could
-not be answered before the next one, and would let more noise through."""
+RADIANS_OF_PERIOD = np.pi / 2.0
+"""Bandwidth of the acceleration times the time between two samples, by rule: half of the highest
+frequency that samples can show."""
 
 RADIANS_OF_AGE = 1.0 / 3.0
 """Bandwidth of the acceleration times the age of the samples: it is carried to the tick unchanged,

@@ -40,7 +40,7 @@ class ObserverConfig(PluginConfig):
         gt=0.0,
         description="how much a joint's acceleration changes within one second, rad/s^3; larger "
         "follows faster and lets more encoder noise through; none: by rule, from the noise of the"
-        " encoders for a bandwidth of one radian a period",
+        " encoders for a bandwidth of half the highest frequency that the samples can show",
     )
     vehicle_jerk_m_s3: float | None = Field(
         None,
