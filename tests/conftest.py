@@ -1,5 +1,8 @@
-"""What tests run beside one another, where pytest-xdist runs them in several processes."""
+"""What tests run beside one another in several processes, and what they keep to themselves."""
 
+import os
+import shutil
+import tempfile
 from pathlib import Path
 
 import pytest
@@ -7,6 +10,16 @@ import pytest
 HERE = Path(__file__).parent
 ALONE = ("architecture", "faults", "integration", "ros")
 """Folders with graphs, environments and clocks: one of their tests at a time."""
+FONTS = "MPLCONFIGDIR"
+"""matplotlib's folder: a list of fonts that another program left broken shows on stderr."""
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Give matplotlib a folder of this session's own; workers take over that of their master."""
+    if FONTS not in os.environ:
+        folder = tempfile.mkdtemp(prefix="uvms_matplotlib_")
+        os.environ[FONTS] = folder
+        config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
 
 
 @pytest.hookimpl(tryfirst=True)  # xdist reads the groups in the same hook
