@@ -92,7 +92,8 @@ def test_a_path_that_cannot_be_followed_is_rejected_with_its_reason(tmp_path):
     scenario.write_text(TOO_FAST)
     outcome = uvms(tmp_path / "run", "run", str(scenario), "--composed")
     assert outcome.code == 2
-    assert "error: the planner rejected the goal: path too fast: at t = " in outcome.err
+    assert "error: the planner rejected the goal: path too fast: " in outcome.err
+    assert "times slower it can be followed" in outcome.err
     simulated = uvms(tmp_path / "simulated", "simulate", str(scenario))
     assert simulated.code == 2
     assert "path too fast" in simulated.err

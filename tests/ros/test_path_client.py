@@ -23,7 +23,7 @@ def example(monkeypatch):
     sys.modules.pop("path_client")
 
 
-def followed(example, folder, frame, duration_s=9.0):
+def followed(example, folder, frame, duration_s=120.0):
     """Where the tool was in map_ned (k, 3) while a client led it round a circle in `frame`."""
     with running(folder, duration_s, None, lambda: example.PathClient(frame)) as (
         spinner,
@@ -31,7 +31,7 @@ def followed(example, folder, frame, duration_s=9.0):
         client,
     ):
         spin_until(spinner, lambda: client.ready)
-        times, positions = example.circle(client.tool, 0.01, 4.0)
+        times, positions = example.circle(client.tool, 0.01, 8.0)
         client.send(times, positions)
         way = []
 
@@ -41,7 +41,7 @@ def followed(example, folder, frame, duration_s=9.0):
 
         spin_until(spinner, over)
         assert (client.ending, conductor.goal_handle) == ("succeeded", None), client.message
-        assert client.feedback.duration == pytest.approx(4.0)
+        assert client.feedback.duration == pytest.approx(8.0)
         assert client.feedback.tracking_error < 0.02
     return np.array(way) @ example.FRAMES[frame] - positions[0] @ example.FRAMES[frame]
 

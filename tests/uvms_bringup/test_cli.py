@@ -146,7 +146,7 @@ PERIOD = "is not a multiple of"
             ["--set", "vehicle.hull.mas_kg=190"],
             "override hull.mas_kg: hull has no 'mas_kg'; choose from spheroid, volume_m3, mass_kg,"
             " cg_m, cb_m, inertia_kg_m2, added_mass, attachments, linear_damping,"
-            " quadratic_damping, cross_terms, fins, speeds_m_s",
+            " quadratic_damping, cross_terms, fins, boxes, speeds_m_s",
         ),
     ],
 )

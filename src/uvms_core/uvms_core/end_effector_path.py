@@ -58,10 +58,14 @@ class EndEffectorPath:
     Orientations are treated alike, in the rotation vectors from each point to its neighbours, whose
     axes are those of map_ned: angular velocity and acceleration are continuous, and the tool turns
     the shorter way from point to point.
+
+    Raises SignalError unless the times, two or more, increase from zero.
     """
 
     def __init__(self, goal: PathGoal):
         times = np.array(goal.times, dtype=float)
+        if len(times) < 2 or times[0] != 0.0 or not np.all(np.diff(times) > 0.0):
+            raise SignalError(f"path: its times {times} must increase from 0")
         self._times = times
         self._position = _position_curve(times, np.array(goal.positions, dtype=float))
         self._turn = _Turn(times, goal.orientations) if len(goal.orientations) else None

@@ -1,6 +1,7 @@
 """Node `motion_planner`: plans vehicle and joints every step; serves the two path actions."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from functools import partial
 from threading import Thread
 from typing import Any
@@ -23,6 +24,14 @@ from uvms_planner import PlannerConfig, PlannerStep
 from uvms_planner.part import PlannerPart
 
 
+@dataclass(frozen=True)
+class _Planning:
+    """The goal that is being planned beside the ticks, and when that is over."""
+
+    goal: Any
+    ended: Future
+
+
 class MotionPlannerNode(PartNode):
     """odometry and joint_states in, reference out, every planner step.
 
@@ -38,6 +47,7 @@ class MotionPlannerNode(PartNode):
         super().__init__(**options)
         self._handle: ServerGoalHandle | None = None
         self._outcome: Any = None
+        self._planning: _Planning | None = None
         self._type: Any = None
         self._stamp = 0
         self._accepted = 0
@@ -81,21 +91,40 @@ class MotionPlannerNode(PartNode):
         )
 
     async def _admit_goal(self, action: Action, goal: Any) -> GoalResponse:
-        planner = self.part.planner
+        if self._planning is not None and goal == self._planning.goal:
+            return await self._refuse_repetition(self._planning)
         try:
-            proposal = planner.propose(from_message(action, goal, self.vehicle.joint_names))
-            try:
-                await self._beside(partial(proposal.work, self._say_progress))
-            except BaseException:
-                planner.withdraw()
-                raise
-            self.part.planner.begin(proposal)
+            await self._plan_for(action, goal)
         except UvmsError as fault:
             self.get_logger().error(f"goal rejected: {fault}")
             self.report(self._stamp, diagnostics.ERROR, str(fault))
             return GoalResponse.REJECT
         self._accepted += 1
         return GoalResponse.ACCEPT
+
+    async def _plan_for(self, action: Action, goal: Any) -> None:
+        """Begin the goal's motion once it is planned, beside the ticks."""
+        planner = self.part.planner
+        proposal = planner.propose(from_message(action, goal, self.vehicle.joint_names))
+        planning = self._planning = _Planning(goal, Future(executor=self.executor))
+        try:
+            await self._beside(partial(proposal.work, self._say_progress))
+        except BaseException:
+            planner.withdraw()
+            raise
+        finally:
+            self._planning = None
+            planning.ended.set_result(None)
+        self.part.planner.begin(proposal)
+
+    async def _refuse_repetition(self, planning: _Planning) -> GoalResponse:
+        """A client without an answer asks again; the one answer is that to its first question.
+
+        The action server would refuse this one itself if the first were accepted already.
+        """
+        await planning.ended
+        self.get_logger().info("the same goal again while it was being planned: answered once")
+        return GoalResponse.REJECT
 
     async def _beside(self, work: Callable[[], None]) -> None:
         """Do work that takes its time in a thread, while the ticks go on."""
