@@ -10,7 +10,7 @@ from uvms_planner.whole_path.newton import solve_on_knots
 from uvms_planner.whole_path.path_problem import PathProblem, Posture
 from uvms_planner.whole_path.pieces import coarse_breaks
 from uvms_planner.whole_path.plan import PathPlan
-from uvms_planner.whole_path.solve import ROUGH, Progress, posture_held, size_of, solve
+from uvms_planner.whole_path.solve import THOROUGH, Progress, posture_held, size_of, solve
 
 SLOWEST = 30.0  # factor beyond which the time is not what keeps a path from being followed
 FINE_ENOUGH = 1.03  # ratio between a factor that is too fast and one that is not
@@ -49,30 +49,42 @@ def slow_down(
         return None
     while slow > FINE_ENOUGH * fast:
         middle = float(np.sqrt(fast * slow))
-        progress(0.25, f"{middle:.2f} times slower")
+        progress(0.1, f"{middle:.2f} times slower")
         if _possible(slowed(problem, middle)):
             slow = middle
         else:
             fast = middle
-    return _confirmed(problem, slow, seed, progress)
+    return _fastest(problem, slow, seed, progress)
 
 
 def _possible(problem: PathProblem) -> bool:
     """Whether a plan on the coarse pieces keeps the limits."""
     coarse = discretise(problem, coarse_breaks(problem))
     held = posture_held(coarse)
-    found = solve_on_knots(coarse, held, ROUGH.scaled(size_of(coarse, held)))
+    found = solve_on_knots(coarse, held, THOROUGH.scaled(size_of(coarse, held)))
     plan = PathPlan(problem, coarse.knots, found.coefficients, found.iterations)
     return plan.report.feasible
 
 
-def _confirmed(
-    problem: PathProblem, factor: float, seed: int, progress: Callable[[float, str], None]
+def _fastest(
+    problem: PathProblem, slow: float, seed: int, progress: Callable[[float, str], None]
 ) -> SlowerPlan | None:
-    """The full plan at `factor`, or slightly slower."""
+    """The full plan at the smallest factor up to `slow`, or at one slightly greater."""
+
+    def planned(factor: float) -> SlowerPlan | None:
+        share, text = 0.2, f"{factor:.2f} times slower"
+        progress(share, text)
+        plan = solve(slowed(problem, factor), seed, lambda s, _: progress(share + 0.8 * s, text))
+        return SlowerPlan(factor, plan) if plan.report.feasible else None
+
+    fast, found = 1.0, None
     for _ in range(CONFIRMATIONS):
-        plan = solve(slowed(problem, factor), seed, lambda s, text: progress(0.5 + 0.5 * s, text))
-        if plan.report.feasible:
-            return SlowerPlan(factor, plan)
-        factor *= LITTLE
-    return None
+        found = planned(slow)
+        if found is not None:
+            break
+        fast, slow = slow, LITTLE * slow
+    while found is not None and found.factor > FINE_ENOUGH * fast:
+        middle = float(np.sqrt(fast * found.factor))
+        faster = planned(middle)
+        fast, found = (middle, found) if faster is None else (fast, faster)
+    return found

@@ -1,6 +1,6 @@
 """The best plan over a whole path that can be found: a search for the basin, then the optimum."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
@@ -14,6 +14,8 @@ from uvms_planner.whole_path.search import search
 
 ROUGH = Schedule(barriers=(1e-1, 1e-2, 1e-3, 1e-4))
 FULL = Schedule(barriers=(1e-3, 1e-4, 1e-5))
+THOROUGH = Schedule(barriers=(10.0, 1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5), steps=20, final_steps=40)
+"""From far inside the limits, each barrier solved: where `FULL` gets stuck at a broken limit."""
 REPAIR = Schedule(barriers=(1e-4, 1e-5))
 REPAIRS = 3  # times at most that limits are tightened where a plan exceeds them between samples
 SPARE = 2e-3  # share of a limit by which it is tightened more than it was exceeded
@@ -35,12 +37,32 @@ def solve(
     progress(0.0, "searching")
     held = posture_held(coarse)
     size = size_of(coarse, held)
-    rough = _rough(coarse, held, seed, size, lambda share: progress(0.5 * share, "searching"))
-    progress(0.5, "whole path")
-    begin = fine.taken_from(coarse.knots, rough.coefficients)
-    plan = _polished(fine, begin, size, lambda share: progress(0.5 + 0.5 * share, "whole path"))
+    begins = [
+        fine.taken_from(coarse.knots, rough.coefficients)
+        for rough in _rough(
+            coarse, held, seed, size, lambda share: progress(share / 2, "searching")
+        )
+    ]
+    full = FULL.scaled(size)
+    tick = ticker(lambda share: progress(0.5 + share / 2, "whole path"), full)
+    repairs = [REPAIR.scaled(size).at_price(HIGHER**k * full.price) for k in range(1, REPAIRS + 1)]
+    plan = _within_limits(fine, solve_on_knots(fine, begins[0], full, tick), repairs)
+    for begin in begins:
+        if not plan.report.feasible:
+            plan = min(plan, _thorough(fine, begin, size, progress), key=_worst_share)
     progress(1.0, "whole path")
     return plan
+
+
+def _worst_share(plan: PathPlan) -> float:
+    return plan.report.worst.share
+
+
+def _thorough(fine: Discrete, begin: Array, size: float, progress: Progress) -> PathPlan:
+    schedule = THOROUGH.scaled(size)
+    tick = ticker(lambda share: progress(0.5 + share / 2, "within the limits"), schedule)
+    repairs = [schedule] * REPAIRS
+    return _within_limits(fine, solve_on_knots(fine, begin, schedule, tick), repairs)
 
 
 def posture_held(discrete: Discrete) -> Array:
@@ -58,8 +80,8 @@ def size_of(discrete: Discrete, held: Array) -> float:
 
 def _rough(
     coarse: Discrete, held: Array, seed: int, size: float, progress: Callable[[float], None]
-) -> Solution:
-    """The better of the optima near the posture held and near the fittest of the search.
+) -> list[Solution]:
+    """The optima near the posture held and near the fittest of the search, the better one first.
 
     Prices count for disturbances of the mean square `size`, N^2 and N^2 m^2.
     """
@@ -68,23 +90,19 @@ def _rough(
     fittest = search(coarse, seed)
     progress(2 / 3)
     second = solve_on_knots(coarse, fittest, rough, ticker(lambda s: progress((2 + s) / 3), rough))
-    return min(first, second, key=lambda solution: solution.cost)
+    return sorted([first, second], key=lambda solution: solution.cost)
 
 
-def _polished(
-    discrete: Discrete, begin: Array, size: float, progress: Callable[[float], None]
-) -> PathPlan:
-    """The optimum near `begin` that keeps the limits between the samples as well."""
-    full, repair = FULL.scaled(size), REPAIR.scaled(size)
-    solution = solve_on_knots(discrete, begin, full, ticker(progress, full))
-    count, price = solution.iterations, full.price
-    for _ in range(REPAIRS):
+def _within_limits(discrete: Discrete, solution: Solution, repairs: Sequence[Schedule]) -> PathPlan:
+    """The plan of a solution, with the limits kept between the samples as well."""
+    count = solution.iterations
+    for repair in repairs:
         plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
         excess = plan.report.excess
         if plan.report.feasible or excess.max() > HOPELESS:
             return plan
-        discrete, price = discrete.tightened(excess + SPARE), HIGHER * price
-        solution = solve_on_knots(discrete, solution.coefficients, repair.at_price(price))
+        discrete = discrete.tightened(excess + SPARE)
+        solution = solve_on_knots(discrete, solution.coefficients, repair)
         count += solution.iterations
     return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
 
