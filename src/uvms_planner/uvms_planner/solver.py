@@ -13,7 +13,7 @@ from uvms_core.plugin import create
 from uvms_core.signals import Array, DisturbanceBudget
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
-from uvms_dynamics.geometry import build_geometry, clearances
+from uvms_dynamics.geometry import Geometry, build_geometry, clearances
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.payload import LoadedModel
 from uvms_planner.choice import Choice
@@ -79,6 +79,11 @@ class StepSolver:
             self.around = self._surroundings()
             changed = True
         return changed
+
+    @property
+    def geometry(self) -> Geometry:
+        """Shapes of the vehicle and of what stands around it."""
+        return self._geometry
 
     def _surroundings(self) -> Surroundings:
         return surroundings(self._vehicle, self._geometry, self._margins, health=self._health)
