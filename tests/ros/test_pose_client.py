@@ -74,7 +74,7 @@ def test_a_run_whose_goal_somebody_else_ends_does_not_count_it_as_done(example, 
     if kind == "joints":
         scenario = load_scenario("manipulation")
         angles = np.radians(scenario.load_vehicle().arm.stowed_deg)
-        goal = JointGoal(np.array([60.0]), angles[None] + 0.1)
+        goal = JointGoal(np.array([60.0]), angles[None] + [0.1, 0.1, -0.1, 0.0])
     with running(tmp_path, 60.0, goal, lambda: example.PoseClient("map")) as (
         spinner,
         conductor,

@@ -1,6 +1,7 @@
 """The motion planner: one call each step gives the motion of vehicle and joints one step ahead."""
 
 from collections import deque
+from copy import copy
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,11 +23,13 @@ from uvms_dynamics import end_effector
 from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
+from uvms_planner.follow import PathFollower
 from uvms_planner.on_path import FollowedStep, OnPath
 from uvms_planner.planned_path import PlannedPath
 from uvms_planner.projection import tool_pose
 from uvms_planner.proposal import Motion, Progress, Proposal, silent
 from uvms_planner.report import GoalFeedback, GoalResult, PlannerStep, StepDiagnostics, why_not
+from uvms_planner.safe_stop import LedStop, safe_stop
 from uvms_planner.segment import Knot, Samples, reference
 from uvms_planner.solver import StepSolver
 from uvms_planner.stop import Stop
@@ -43,7 +46,7 @@ class _Plan:
     """How far the motion is planned, and how it would come to rest from there."""
 
     knot: Knot
-    stop: Stop
+    stop: Stop | LedStop
 
 
 class MotionPlanner:
@@ -126,7 +129,9 @@ class MotionPlanner:
         self._proposed = False
         if self._plan is None or not proposal.is_of(self._solver):
             raise GoalRejected("the planner restarted while the goal was being planned")
-        way, motion = proposal.motion_from(self._rest_in(0.0))
+        stop = self._stopping(self._plan)
+        way, motion = proposal.motion_from(stop.end(self._plan.knot.stamp))
+        self._plan.stop = stop
         if self._goal is not None:
             self._end_goal(False, PREEMPTED)
         self._way, self._goal = way, motion
@@ -136,10 +141,27 @@ class MotionPlanner:
         """Where the motion would be at rest if its goal ended in `lead` s."""
         if self._plan is None:
             raise SignalError("motion planner: no step yet")
-        knot, stop = self._plan.knot, self._plan.stop
+        knot = self._plan.knot
         if lead > 0.0 and (ahead := self._ahead(knot.stamp + to_nanoseconds(lead))) is not None:
-            knot, stop = ahead, self._stop_from(ahead)
-        return stop.end(knot.stamp)
+            return self._stop_from(ahead).end(ahead.stamp)
+        return self._stopping(self._plan).end(knot.stamp)
+
+    def _stopping(self, plan: _Plan) -> Stop | LedStop:
+        """How the motion comes to rest if its goal ends now."""
+        motion = self._way if _covers(self._way, plan.knot.stamp) else self._goal
+        if motion is None or not _covers(motion, plan.knot.stamp):
+            return plan.stop
+        if isinstance(motion, PathFollower):  # it takes too long to see where it would go
+            return plan.stop
+        if not isinstance(plan.stop, Stop):
+            raise AssertionError("a stop with a lead is of a goal that has ended")
+        tried = copy(motion)  # the goal may go on, and remembers its last step
+
+        def follow(knot: Knot) -> tuple[Knot, Samples]:
+            step = tried.plan(knot, self._times)
+            return step if isinstance(step, tuple) else (step.knot, step.samples)
+
+        return safe_stop(plan.stop, plan.knot, follow, motion.end, self._solver, self._times)
 
     def _ahead(self, stamp: int) -> Knot | None:
         """The knot at a stamp as the present goal has it; None where nobody can know."""
@@ -157,7 +179,8 @@ class MotionPlanner:
 
     def cancel(self) -> None:
         """Abandon the goal and come to rest smoothly; without a goal nothing happens."""
-        if self._goal is not None:
+        if self._goal is not None and self._plan is not None:
+            self._plan.stop = self._stopping(self._plan)
             self._end_goal(False, "cancelled")
 
     @property
