@@ -82,8 +82,8 @@ def test_a_path_takes_the_place_of_the_runs_own(example, tmp_path):
         client,
     ):
         spin_until(spinner, lambda: client.ready)
-        spin_until(spinner, lambda: conductor.stamp > to_nanoseconds(60.0))
-        client.send(*example.circle(client.tool, 0.05, 40.0))
+        spin_until(spinner, lambda: conductor.stamp > to_nanoseconds(20.0))
+        client.send(*example.circle(client.tool, 0.02, 15.0))
         spin_until(spinner, lambda: conductor.result is not None)
         assert conductor.goal_failure() == ["the run's goal: pre-empted by a new goal"]
         spin_until(spinner, lambda: client.ending is not None)

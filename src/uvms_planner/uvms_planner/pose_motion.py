@@ -10,12 +10,15 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_planner.errors import GoalRejected
 from uvms_planner.problem import VEHICLE
 from uvms_planner.segment import Samples
-from uvms_planner.solver import StepSolver
+from uvms_planner.solver import MORE_TILT, StepSolver
 from uvms_planner.straight_motion import Profile, StraightMotion, shares_of_limits
 
 SLOWEST = 30.0  # times slower; beyond that the speed is not what takes the thrust
 FINE_ENOUGH = 1.01  # ratio between a factor that is too fast and one that is not
+TILT_SHARE = 0.5
+"""Of the free attitude's limits, that a motion may take; the rest is for currents and overshoot."""
 EACH_PHASE = 50  # instants of a phase at which its thrust is examined
+EACH_PHASE_TILT = 10  # the same of the tilt, which takes longer
 ROUNDING = 1e-9  # share of a limit
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 
@@ -97,7 +100,7 @@ def plan_pose(goal: PoseGoal, ends: tuple[Array, Array], solver: StepSolver) -> 
     profile = Profile.lasting(wanted, *allowed)
     motion = plan_straight(ends, profile, solver, goal.hold_s)
     if motion.profile is not profile:
-        lack, needed = thrust_lacking(motion.along(profile), solver), motion.duration - goal.hold_s
+        lack, needed = lacking(motion.along(profile), solver), motion.duration - goal.hold_s
         raise GoalRejected(f"pose: {wanted:.4g} s are too short; {lack}; allow {needed:.4g} s")
     return motion
 
@@ -119,31 +122,53 @@ def allowed_between(
 def plan_straight(
     ends: tuple[Array, Array], profile: Profile, solver: StepSolver, hold: float = 0.0
 ) -> StraightMotion:
-    """The motion between two configurations (m,), slower than `profile` where thrust is lacking.
+    """The motion between two configurations (m,), slower than `profile` where thrust is lacking, or
+    what keeps the vehicle level.
 
-    Raises GoalRejected where the way is not clear, or the thrust is lacking at any speed.
+    Raises GoalRejected where the way is not clear, or it is lacking at any speed.
     """
     motion = StraightMotion(ends, profile, 0, solver.config.step_s, hold)
     check_clear(motion, solver)
-    lack = thrust_lacking(motion, solver)
+    lack = lacking(motion, solver)
     if not lack:
         return motion
     fast, slow = 1.0, SLOWEST
-    if thrust_lacking(motion.along(profile.slower(slow)), solver):
-        raise GoalRejected(f"pose: {lack}, and too much of it however slowly it goes there")
+    if lacking(motion.along(profile.slower(slow)), solver):
+        raise GoalRejected(f"pose: {lack}, and too much however slowly it goes there")
     while slow > FINE_ENOUGH * fast:
         middle = float(np.sqrt(fast * slow))
-        lacking = thrust_lacking(motion.along(profile.slower(middle)), solver)
-        fast, slow = (middle, slow) if lacking else (fast, middle)
+        too_fast = lacking(motion.along(profile.slower(middle)), solver)
+        fast, slow = (middle, slow) if too_fast else (fast, middle)
     return motion.along(profile.slower(slow))
 
 
-def thrust_lacking(motion: StraightMotion, solver: StepSolver) -> str:
+def lacking(motion: StraightMotion, solver: StepSolver) -> str:
+    """What a motion takes more of than a plan may take; empty where that is nothing."""
+    return _thrust_lacking(motion, solver) or _tilt_beyond(motion, solver)
+
+
+def _tilt_beyond(motion: StraightMotion, solver: StepSolver) -> str:
+    """Where roll or pitch, which no thruster holds, would come to more than their share."""
+    times, limits = _phases(motion, EACH_PHASE_TILT), solver.motion_limits
+    tilt = np.abs(solver.tilt().along(solver.model, motion.sample(times)))
+    bounds = TILT_SHARE * np.array([limits.roll_max, limits.pitch_max])
+    allowed = np.maximum(bounds, MORE_TILT * tilt[0])
+    k, axis = np.unravel_index(int(np.argmax(tilt / allowed)), tilt.shape)
+    if tilt[k, axis] <= allowed[axis]:
+        return ""
+    name, angle = ("roll", "pitch")[axis], np.rad2deg(tilt[k, axis])
+    become = f"{name} would become {angle:.3g} deg"
+    if not np.isfinite(angle):
+        become = f"nothing would hold {name} against the flow"
+    return f"{become} at t = {times[k]:.4g} s, allowed {np.rad2deg(allowed[axis]):.3g} deg"
+
+
+def _thrust_lacking(motion: StraightMotion, solver: StepSolver) -> str:
     """What a motion takes beyond what a plan may take of a thruster; empty where it is enough.
 
     Where more is needed at rest already, as much as that is allowed.
     """
-    times = _phases(motion)
+    times = _phases(motion, EACH_PHASE)
     shares = np.abs(_wrenches(motion.sample(times), solver) @ solver.around.shares.T)
     allowed = np.maximum(1.0, shares[0]) * (1.0 + ROUNDING)
     excess = shares / allowed
@@ -156,12 +181,12 @@ def thrust_lacking(motion: StraightMotion, solver: StepSolver) -> str:
     )
 
 
-def _phases(motion: StraightMotion) -> Array:
+def _phases(motion: StraightMotion, each: int) -> Array:
     """Times (k,) s that show every phase: getting up to speed, going on, stopping."""
     profile = motion.profile
     if profile is None:
         return np.zeros(1)
-    shares = np.linspace(0.0, 1.0, EACH_PHASE)
+    shares = np.linspace(0.0, 1.0, each)
     cruise = profile.duration - 2 * profile.ramp
     return np.concatenate(
         [

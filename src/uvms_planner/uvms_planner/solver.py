@@ -25,6 +25,7 @@ from uvms_planner.fitness import self_disturbance
 from uvms_planner.interfaces import StepMethod
 from uvms_planner.joined_path import JoinedPath
 from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScales
+from uvms_planner.motion_tilt import Tilt
 from uvms_planner.problem import VEHICLE, StepProblem
 from uvms_planner.segment import Knot
 from uvms_planner.whole_path import PathPlan, PathProblem, Posture, Surroundings, ToolPath
@@ -84,6 +85,10 @@ class StepSolver:
     def geometry(self) -> Geometry:
         """Shapes of the vehicle and of what stands around it."""
         return self._geometry
+
+    def tilt(self) -> Tilt:
+        """How far the vehicle would tilt on its way, with the thrusters that it has now."""
+        return Tilt(self._vehicle, self._health)
 
     def _surroundings(self) -> Surroundings:
         return surroundings(self._vehicle, self._geometry, self._margins, health=self._health)
