@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from planner_rig import CALM, drive, short_figure_9
 
-from uvms_core.signals import JointGoal, PathGoal, PoseGoal
+from uvms_core.signals import DisturbanceBudget, JointGoal, PathGoal, Payload, PoseGoal
 from uvms_planner import GoalRejected
 from uvms_planner.planner import PREEMPTED
 
@@ -68,6 +68,36 @@ def test_a_new_goal_ends_the_one_before_and_begins_from_its_smooth_stop(first, s
     assert_smooth(run)
     assert_within_limits(run)
     assert not np.abs(run.references[-1].nu).max() > 1e-9
+
+
+def test_a_method_that_plans_step_by_step_changes_over_as_well():
+    run = drive(limits=CALM, method="least_norm")
+    run.planner.accept(rise(run))
+    run.advance(12)
+    run.planner.accept(rise(run, height=-0.1))
+    assert run.advance().finished.message == PREEMPTED
+    assert run.until_finished().success
+    assert_smooth(run)
+    assert_within_limits(run)
+
+
+def test_what_is_planned_anew_for_a_payload_may_be_ended_by_a_new_path():
+    """The way on is then that of the windows, which the whole path's plan does not know."""
+    run, zero = drive(limits=CALM), np.zeros(6)
+    run.planner.accept(rise(run, 40.0, 0.3))
+    run.advance(12)
+    payload = Payload(True, 1.0, 0.01, 4.0, 0.1, np.array([0.0, 0.0, 0.1]), np.full(3, 0.01))
+    run.planner.inform(DisturbanceBudget(0, zero, zero, zero, zero, payload))
+    run.advance(6)
+    proposal = run.planner.propose(rise(run), 2.0)
+    proposal.work(lambda share, text: None)
+    run.advance(4)
+    assert 0.0 < run.planner.lateness(proposal) < 0.05
+    run.planner.begin(proposal)
+    assert run.advance().finished.message == PREEMPTED
+    assert run.until_finished().success
+    assert_smooth(run)
+    assert_within_limits(run)
 
 
 @pytest.mark.parametrize("method", ["genetic", "least_norm"])

@@ -326,6 +326,8 @@ class Conductor(Node):
         text = f"t = {to_seconds(self.stamp):6.1f} s"
         if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
             text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
+        elif self.feedback is not None and hasattr(self.feedback, "distance"):
+            text += f"  {self.feedback.distance:.2f} m to go"
         return text
 
 
