@@ -1,4 +1,4 @@
-"""The goal of a scenario: a path of the end effector or a motion of the joints, for any arm."""
+"""The goal of a scenario: a path of the end effector, a motion of the joints, or a pose."""
 
 from typing import Annotated
 
@@ -6,9 +6,11 @@ import numpy as np
 from pydantic import Field, model_validator
 
 from uvms_bringup.errors import ScenarioError
+from uvms_bringup.longest_run import LONGEST_RUN_S
+from uvms_bringup.pose_spec import PoseSpec
 from uvms_core.config import Config
 from uvms_core.errors import ConfigError
-from uvms_core.signals import Array, JointGoal, PathGoal
+from uvms_core.signals import Array, JointGoal, PathGoal, PoseGoal
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.frames import arm_length
 from uvms_core.vehicle.locate import vehicle_path
@@ -18,9 +20,6 @@ from uvms_dynamics.kernels.rotations import matrix_to_quat, rpy_to_quat
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.plant.config import initial_joints, initial_joints_deg
 from uvms_planner import PathSpec
-
-LONGEST_RUN_S = 1e6
-"""No run, and so no goal, is longer."""
 
 
 class JointMotionSpec(Config):
@@ -61,7 +60,9 @@ class JointMotionSpec(Config):
 
 
 class Goal(Config):
-    """What the planner is asked for: a path of the end effector, a joint motion, or nothing."""
+    """What the planner is asked for: a path of the end effector, a joint motion, a pose, or
+    nothing.
+    """
 
     path: PathSpec | None = Field(None, description="path of the end effector")
     path_made_for: str | None = Field(
@@ -70,11 +71,15 @@ class Goal(Config):
         " arm the path is scaled by the ratio of the arms' lengths; none: it is not scaled",
     )
     joints: JointMotionSpec | None = Field(None, description="motion of the joints")
+    pose: PoseSpec | None = Field(
+        None, description="pose that the vehicle goes to and holds, with its arm as it is"
+    )
 
     @model_validator(mode="after")
     def _one_of_them(self) -> "Goal":
-        if self.path is not None and self.joints is not None:
-            raise ValueError("a goal has `path` or `joints`, not both")
+        given = [word for word in ("path", "joints", "pose") if getattr(self, word) is not None]
+        if len(given) > 1:
+            raise ValueError(f"a goal has one of path, joints and pose; got {' and '.join(given)}")
         if self.path is not None and self.path.absolute and self.path_made_for is not None:
             raise ValueError(
                 f"path_made_for: a path in the frame {self.path.frame} is absolute and cannot be"
@@ -82,7 +87,7 @@ class Goal(Config):
             )
         return self
 
-    def build(self, vehicle: Vehicle, plant: PlantConfig) -> PathGoal | JointGoal | None:
+    def build(self, vehicle: Vehicle, plant: PlantConfig) -> PathGoal | JointGoal | PoseGoal | None:
         """The goal of a run of this vehicle that starts as `plant` says.
 
         Raises:
@@ -99,6 +104,9 @@ class Goal(Config):
         if own.joints is not None:
             positions = np.deg2rad(np.array(own.joints.positions_deg))
             return JointGoal(np.array(own.joints.times_s), positions)
+        if own.pose is not None:
+            rpy = np.deg2rad(np.array(plant.initial_rpy_deg, dtype=float))
+            return own.pose.goal(np.array(plant.initial_position_m, dtype=float), rpy)
         return None
 
     def for_vehicle(self, vehicle: Vehicle, plant: PlantConfig) -> "Goal":
@@ -118,9 +126,11 @@ class Goal(Config):
 
     @property
     def duration_s(self) -> float:
-        """How long the goal takes."""
+        """How long the goal takes; of a pose without a time for the way, what it holds."""
         if self.path is not None:
             return self.path.duration_s
+        if self.pose is not None:
+            return (self.pose.duration_s or 0.0) + self.pose.hold_s
         return self.joints.times_s[-1] if self.joints is not None else 0.0
 
 

@@ -9,8 +9,9 @@ from typing import Any
 from pydantic import BaseModel, Field, ValidationInfo, field_validator
 
 from uvms_bringup.errors import ScenarioError
-from uvms_bringup.goal import LONGEST_RUN_S, Goal
+from uvms_bringup.goal import Goal
 from uvms_bringup.locate import known_scenarios
+from uvms_bringup.longest_run import LONGEST_RUN_S
 from uvms_bringup.start import check_start
 from uvms_control import AllocatorConfig, ControlConfig
 from uvms_core.config import Config, validated

@@ -30,13 +30,14 @@ from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
 from uvms_bringup.stopped import SignalWatch, Stopped
 from uvms_core.errors import UvmsError
-from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core.signals import Goal as AnyGoal
+from uvms_core.signals import PathGoal, to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
 from uvms_core.yaml_text import dump_yaml
 from uvms_dynamics.simulation.plant.as_built import AsBuilt, as_built
 from uvms_planner.errors import GoalRejected
 
-Goal = PathGoal | JointGoal | None
+Goal = AnyGoal | None
 VEHICLE_FILE = "vehicle.yaml"
 BAG_FILE = "metadata.yaml"
 SUMMARY_FILE = "summary.json"

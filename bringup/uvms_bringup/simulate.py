@@ -9,7 +9,7 @@ from uvms_bringup.scenario import Scenario
 from uvms_core import diagnostics, topics
 from uvms_core.description import StateFrames, description_message, static_message
 from uvms_core.diagnostics import Status
-from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds
+from uvms_core.signals import Goal, to_nanoseconds
 from uvms_core.vehicle import Vehicle
 
 Progress = Callable[[int, str], None]
@@ -18,7 +18,7 @@ Progress = Callable[[int, str], None]
 def simulate(
     scenario: Scenario,
     vehicle: Vehicle,
-    goal: PathGoal | JointGoal | None,
+    goal: Goal | None,
     log: SignalWriter | MemoryWriter | None = None,
     progress: Progress = lambda stamp, text: None,
     observe: Callable[[LoopTick], None] = lambda tick: None,

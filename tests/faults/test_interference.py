@@ -58,3 +58,24 @@ def test_a_pause_and_a_goal_of_somebody_else_are_incidents(tmp_path, saw):
     assert "the planner accepted 1 goals that were not this run's" in incidents
     assert run.summary["check"]["notes"] or run.summary["incidents"]
     saw("a pause and a goal of somebody else's client", "incidents in log and summary")
+
+
+@pytest.mark.long
+def test_a_run_whose_goal_gives_way_to_somebody_elses_is_not_completed(tmp_path, saw):
+    domain = one_domain()
+    names = ",".join(load_vehicle().joint_names)
+    arguments = ("run", "manipulation", "--duration", "16", "--pace", "realtime")
+    with running(tmp_path / "a", *arguments, **domain) as run:
+        run.await_node(topics.PLANT)
+        run.await_ticks(400_000)  # the path alone takes 100 kB
+        environment = os.environ | domain | {"ROS_AUTOMATIC_DISCOVERY_RANGE": "LOCALHOST"}
+        slower = MEDDLER.replace("[4.0]", "[20.0]")  # from another posture
+        subprocess.run([sys.executable, "-c", slower, names], env=environment, check=True)
+        run.code()
+    incidents = "; ".join(run.end.incidents)
+    assert "the planner accepted 1 goals that were not this run's" in incidents
+    assert "the run's goal: pre-empted by a new goal" in incidents
+    assert run.end.goal == "aborted"
+    assert run.summary["outcome"] == "given up"
+    assert "the planner's goal was aborted" in run.summary["reasons"]
+    saw("somebody else's goal in the place of the run's own", "given up, and the incidents say why")

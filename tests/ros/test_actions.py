@@ -1,4 +1,4 @@
-"""The planner's actions on the whole graph: feedback, success, cancel, one goal at a time."""
+"""The planner's actions on the whole graph: feedback, success, cancel, rejection."""
 
 import numpy as np
 import pytest
@@ -42,13 +42,6 @@ def test_a_goal_can_be_cancelled_and_the_vehicle_comes_to_rest(tmp_path):
     assert conductor.result_status == GoalStatus.STATUS_CANCELED
     assert conductor.result.message == "cancelled"
     assert ended < to_seconds(conductor.stamp) == 60.0
-
-
-def test_a_second_goal_is_rejected_while_one_is_followed(tmp_path):
-    goal = path_from_start(20.0, (0.0, 0.0, 0.1))
-    with running(tmp_path, 6.0, goal) as (spinner, conductor):
-        with pytest.raises(RunError, match="another goal is active"):
-            conductor.send_goal(spinner, goal)
 
 
 def test_a_joint_goal_beyond_a_limit_is_rejected_by_name(tmp_path):

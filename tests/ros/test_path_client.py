@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 from in_process import spin_until
 from led_graph import running
+from test_actions import path_from_start
 
 from uvms_core.signals import to_nanoseconds
 
@@ -70,6 +71,24 @@ def test_what_is_cancelled_ends_so(example, tmp_path):
         spin_until(spinner, lambda: client.ending is not None)
         assert conductor.stamp < to_nanoseconds(50.0)
     assert (client.ending, client.message) == ("cancelled", "cancelled")
+
+
+def test_a_path_takes_the_place_of_the_runs_own(example, tmp_path):
+    """It is planned while the vehicle goes on, and begins where that has brought it."""
+    goal = path_from_start(200.0, (0.0, 0.0, 0.5))
+    with running(tmp_path, 200.0, goal, lambda: example.PathClient("map_ned")) as (
+        spinner,
+        conductor,
+        client,
+    ):
+        spin_until(spinner, lambda: client.ready)
+        spin_until(spinner, lambda: conductor.stamp > to_nanoseconds(20.0))
+        client.send(*example.circle(client.tool, 0.02, 15.0))
+        spin_until(spinner, lambda: conductor.result is not None)
+        assert conductor.goal_failure() == ["the run's goal: pre-empted by a new goal"]
+        spin_until(spinner, lambda: client.ending is not None)
+        assert client.ending == "succeeded", client.message
+        assert client.feedback.tracking_error < 0.02
 
 
 def test_what_cannot_be_followed_is_told_to_be_rejected(example, tmp_path):

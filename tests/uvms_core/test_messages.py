@@ -306,3 +306,53 @@ def test_tf_holds_the_pose_of_the_vehicle(rng):
     assert transform["header"]["frame_id"] == "map_ned"
     assert transform["child_frame_id"] == "base_link_fsd"
     assert list(transform["transform"]["translation"].values()) == odometry.position.tolist()
+
+
+def pose_message(rng, **changes):
+    action = topics.GO_TO_POSE
+    msg = as_object(to_message(action, example(action.goal, rng)))
+    msg.header.frame_id = changes.pop("frame", "map_ned")
+    for path, value in changes.items():
+        *parents, last = path.split("__")
+        target = msg
+        for part in parents:
+            target = getattr(target, part)
+        setattr(target, last, value)
+    return msg
+
+
+def test_a_pose_in_map_is_that_of_base_link(rng):
+    """East of north by 30 deg is 60 deg from east; forward is forward in both bodies."""
+    half = np.deg2rad(60.0) / 2
+    turned = SimpleNamespace(x=0.0, y=0.0, z=np.sin(half), w=np.cos(half))
+    point = SimpleNamespace(x=1.0, y=2.0, z=-3.0)  # east, north, up
+    msg = pose_message(rng, frame="map", pose__orientation=turned, pose__position=point)
+    goal = from_message(topics.GO_TO_POSE, msg)
+    np.testing.assert_array_equal(goal.position, [2.0, 1.0, 3.0])
+    expected = [0.0, 0.0, np.sin(np.deg2rad(15.0)), np.cos(np.deg2rad(15.0))]
+    np.testing.assert_allclose(np.abs(goal.quaternion @ expected), 1.0, atol=1e-15)
+    np.testing.assert_allclose(
+        quat_to_matrix(goal.quaternion), quat_to_matrix(np.array(expected)), atol=1e-15
+    )
+
+
+@pytest.mark.parametrize(
+    ("change", "text"),
+    [
+        ({"frame": "odom"}, "go_to_pose: header.frame_id is 'odom'; it must be 'map_ned' or 'map'"),
+        ({"pose__position__x": NAN}, "go_to_pose: pose.position.x is nan; it must be finite"),
+        ({"pose__orientation__w": 9.0}, "go_to_pose: pose.orientation has length"),
+        ({"max_speed": -0.5}, "go_to_pose: max_speed is -0.5; it must be >= 0"),
+        ({"max_speed": INF}, "go_to_pose: max_speed is inf; it must be finite"),
+        ({"duration__sec": -3}, "go_to_pose: duration is -2.5; it must be >= 0"),
+        ({"hold__sec": -1}, "go_to_pose: hold is -1; it must be >= 0"),
+    ],
+)
+def test_a_pose_that_is_not_right_is_refused_by_field_and_value(rng, change, text):
+    with pytest.raises(SignalError, match=text):
+        from_message(topics.GO_TO_POSE, pose_message(rng, **change))
+
+
+def test_each_goal_has_its_action(rng):
+    for action in topics.ACTIONS:
+        assert topics.action_of(example(action.goal, rng)) is action

@@ -76,6 +76,7 @@ def example(kind: type, rng: np.random.Generator) -> Any:
         signals.PathGoal: lambda: signals.PathGoal(
             np.array([0.0, 0.5, 2.0]), n(3, 3), unit(rng, 3)
         ),
+        signals.PoseGoal: lambda: signals.PoseGoal(n(3), unit(rng), 2.5, 1.0, 0.25),
         signals.JointGoal: lambda: signals.JointGoal(np.array([1.0, 2.5]), n(2, 4)),
     }
     return makers[kind]()

@@ -172,11 +172,12 @@ def test_a_goal_before_the_first_odometry_is_rejected():
     assert str(caught.value) == "no odometry yet: the planner does not know where the vehicle is"
 
 
-def test_a_second_goal_is_rejected_while_one_is_active():
+def test_another_goal_is_rejected_while_one_is_being_planned():
     run = drive()
-    run.planner.accept(short_figure_9(2.0, 0.01).goal(*run.planner.end_effector))
-    text = "another goal is active: wait for its end, or cancel it"
-    assert rejection(path(), run) == text
+    proposal = run.planner.propose(short_figure_9(2.0, 0.01).goal(*run.planner.end_effector))
+    assert rejection(path(), run) == "another goal is being planned: wait for its answer"
+    proposal.work(lambda share, text: None)
+    run.planner.begin(proposal)
     assert run.until_finished().success
     run.planner.accept(JointGoal(np.array([5.0]), run.references[-1].q[-1:]))
 

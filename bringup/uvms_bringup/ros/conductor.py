@@ -27,7 +27,7 @@ from uvms_core.ros.node import qos_profile
 from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
-from uvms_core.signals import JointGoal, PathGoal, to_seconds
+from uvms_core.signals import Goal, to_seconds
 from uvms_core.topic import NodeTopics, Topic
 from uvms_core.vehicle import Vehicle
 
@@ -139,7 +139,7 @@ class Conductor(Node):
         """Newest simulation time, ns."""
         return self.recorder.stamp
 
-    def conduct(self, spinner: Spinner, goal: PathGoal | JointGoal | None) -> None:
+    def conduct(self, spinner: Spinner, goal: Goal | None) -> None:
         """Bring the run to its first tick, send the goal and start time."""
         self.recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
@@ -195,9 +195,9 @@ class Conductor(Node):
             if all(topic.name not in newest for topic in own.outputs)
         ]
 
-    def send_goal(self, spinner: Spinner, goal: PathGoal | JointGoal) -> None:
+    def send_goal(self, spinner: Spinner, goal: Goal) -> None:
         """Ask the planner for a goal; RunError with its reason where it is rejected."""
-        action = next(item for item in topics.ACTIONS if isinstance(goal, item.goal))
+        action = topics.action_of(goal)
         cls = action_class(action)
         self._client = ActionClient(self, cls, action.name)
         message = to_ros(cls.Goal, to_message(action, goal, self._joint_names))
@@ -293,6 +293,12 @@ class Conductor(Node):
             return "none"
         return GOAL_STATES.get(self.result_status or 0, "running")
 
+    def goal_failure(self) -> list[str]:
+        """Why the run's goal did not succeed, in the planner's words, where it has ended."""
+        if self.result is None or self.result.success:
+            return []
+        return [f"the run's goal: {self.result.message}"]
+
     def _take_status(self, msg: Any) -> None:
         status = from_message(topics.DIAGNOSTICS, msg)
         if status.level == diagnostics.ERROR:
@@ -320,6 +326,8 @@ class Conductor(Node):
         text = f"t = {to_seconds(self.stamp):6.1f} s"
         if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
             text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
+        elif self.feedback is not None and hasattr(self.feedback, "distance"):
+            text += f"  {self.feedback.distance:.2f} m to go"
         return text
 
 

@@ -32,7 +32,7 @@ from uvms_core.messages import to_message
 from uvms_core.ros.convert import action_class, to_ros
 from uvms_core.ros.request import Request
 from uvms_core.ros.spin import Spinner, start
-from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
+from uvms_core.signals import to_nanoseconds, to_seconds
 
 START_PATIENCE_S = 90.0
 TICK_PATIENCE_S = 5.0
@@ -165,7 +165,7 @@ class NodeReplay:
         goal = self.scenario.goal.build(self._vehicle, self.scenario.plant)
         if self.node != topics.MOTION_PLANNER or goal is None:
             return
-        action = _action_of(goal)
+        action = topics.action_of(goal)
         cls: Any = action_class(action)
         client = ActionClient(self._player, cls, action.name)
         deadline = time.monotonic() + START_PATIENCE_S
@@ -178,10 +178,6 @@ class NodeReplay:
         sent = client.send_goal_async(to_ros(cls.Goal, to_message(action, goal, names)))
         if not self._await(sent, START_PATIENCE_S) or not sent.result().accepted:
             raise RunError("the planner rejected the goal of the recorded run")
-
-
-def _action_of(goal: PathGoal | JointGoal) -> topics.Action:
-    return next(action for action in topics.ACTIONS if isinstance(goal, action.goal))
 
 
 def replay_into(run: RunLog, node: str, rate: float, folder: Path) -> int:

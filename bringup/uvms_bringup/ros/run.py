@@ -26,7 +26,7 @@ from uvms_bringup.stopped import Stopped
 from uvms_core import registry, topics
 from uvms_core.ros.node import UvmsNode
 from uvms_core.ros.spin import Spinner, start
-from uvms_core.signals import JointGoal, PathGoal, to_nanoseconds, to_seconds
+from uvms_core.signals import Goal, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.events import EventsConfig
@@ -59,7 +59,7 @@ class GraphRun:
 
     scenario: Scenario
     vehicle: Vehicle
-    goal: PathGoal | JointGoal | None
+    goal: Goal | None
     pace: Pace
     cast: Cast
     composed: bool
@@ -199,6 +199,7 @@ class GraphRun:
         self.ending.goal = conductor.goal_state()
         if topics.CLOCK.name not in conductor.recorder.newest:
             return
+        self.ending.incidents += conductor.goal_failure()
         silent = conductor.count(spinner)
         self.ending.incidents += [
             f"{role} did not say at the end how many messages it had sent" for role in silent

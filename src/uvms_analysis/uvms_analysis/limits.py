@@ -67,7 +67,11 @@ def goal_end_s(run: Analysis) -> float:
     try:
         if run.path is not None:
             return run.path_start_s + float(run.path.times[-1])
-        return float(run.log.configuration()["goal"]["joints"]["times_s"][-1])
+        goal = run.log.configuration()["goal"]
+        if goal.get("pose"):
+            way = goal["pose"]["duration_s"]  # none: as the limits allow
+            return 0.0 if way is None else float(way + goal["pose"]["hold_s"])
+        return float(goal["joints"]["times_s"][-1])
     except (LogError, KeyError, TypeError, IndexError, ValueError):
         return 0.0
 

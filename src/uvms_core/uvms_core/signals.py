@@ -318,3 +318,18 @@ class JointGoal:
 
     times: Array  # (k,) s after the start, increasing, > 0
     positions: Array  # (k, n) rad
+
+
+@dataclass(frozen=True)
+class PoseGoal:
+    """A pose that the vehicle goes to and holds, level, while the joints stay as they are."""
+
+    position: Array  # (3,) m, map_ned
+    quaternion: Array  # (4,) body to map_ned; level
+    duration_s: float = 0.0  # of the way there; 0: as short as the limits allow
+    hold_s: float = 0.0  # to stay there before the goal ends
+    speed_max_m_s: float = 0.0  # on the way; 0: what the limits allow
+
+
+Goal = PathGoal | JointGoal | PoseGoal
+"""What the planner may be asked for."""

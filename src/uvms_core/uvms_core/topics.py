@@ -50,6 +50,7 @@ __all__ = [
     "NodeTopics",
     "Qos",
     "Topic",
+    "action_of",
     "contract",
     "nodes",
     "of",
@@ -188,7 +189,13 @@ FOLLOW_END_EFFECTOR_PATH = Action(
 FOLLOW_JOINT_TRAJECTORY = Action(
     "follow_joint_trajectory", "uvms_msgs/action/FollowJointTrajectory", signals.JointGoal
 )
-ACTIONS: tuple[Action, ...] = (FOLLOW_END_EFFECTOR_PATH, FOLLOW_JOINT_TRAJECTORY)
+GO_TO_POSE = Action("go_to_pose", "uvms_msgs/action/GoToPose", signals.PoseGoal)
+ACTIONS: tuple[Action, ...] = (FOLLOW_END_EFFECTOR_PATH, FOLLOW_JOINT_TRAJECTORY, GO_TO_POSE)
+
+
+def action_of(goal: signals.Goal) -> Action:
+    """The action that takes a goal."""
+    return next(action for action in ACTIONS if isinstance(goal, action.goal))
 
 
 def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:

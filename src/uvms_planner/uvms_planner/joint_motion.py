@@ -2,21 +2,22 @@
 
 import numpy as np
 
-from uvms_core.signals import Array, JointGoal, to_nanoseconds, to_seconds
+from uvms_core.signals import Array, JointGoal
 from uvms_planner.errors import GoalRejected
 from uvms_planner.limits import JointLimits
 from uvms_planner.problem import VEHICLE
-from uvms_planner.segment import Knot, Samples, evaluate, quintic
+from uvms_planner.segment import Samples, evaluate, quintic
+from uvms_planner.timed_motion import TimedMotion
 
 PEAK_RATE = 1.875  # of a rest-to-rest quintic, times distance / duration
 PEAK_ACCELERATION = 10 / np.sqrt(3)  # times distance / duration^2
 
 
-class JointTrajectory:
+class JointTrajectory(TimedMotion):
     """Quintic rest-to-rest pieces from the joints of `configuration` (m,) through the goal."""
 
     def __init__(self, goal: JointGoal, configuration: Array, start: int, step: float):
-        self._start, self._step = start, step
+        super().__init__(start, step)
         self._times = np.concatenate([[0.0], goal.times])
         self._points = np.tile(configuration, (len(self._times), 1))
         self._points[1:, VEHICLE:] = goal.positions
@@ -29,23 +30,9 @@ class JointTrajectory:
         ]
 
     @property
-    def start(self) -> int:
-        """Stamp at which the motion begins."""
-        return self._start
-
-    @property
-    def end(self) -> int:
-        """Stamp at which the motion ends."""
-        return self._start + to_nanoseconds(self.duration)
-
-    @property
     def duration(self) -> float:
         """Seconds that the motion takes."""
         return float(self._times[-1])
-
-    def elapsed(self, stamp: int) -> float:
-        """Seconds of the motion that are done at `stamp`, within 0 and its duration."""
-        return min(max(to_seconds(stamp - self._start), 0.0), self.duration)
 
     def sample(self, times: Array) -> Samples:
         """Configuration, rate and acceleration (k, m) at `times` (k,) s after the start."""
@@ -62,20 +49,6 @@ class JointTrajectory:
             np.vstack([row.rate for row in rows]),
             np.vstack([row.acceleration for row in rows]),
         )
-
-    def plan(self, knot: Knot, times: Array) -> tuple[Knot, Samples]:
-        """The next knot after `knot`, and the motion to it at `times` (k,) s."""
-        begin = to_seconds(knot.stamp - self._start)
-        samples = self.sample(begin + times)
-        last = self.sample(np.array([begin + self._step]))
-        end = Knot(
-            stamp=knot.stamp + to_nanoseconds(self._step),
-            configuration=last.configuration[0],
-            rate=last.rate[0],
-            acceleration=last.acceleration[0],
-            increment=last.configuration[0] - knot.configuration,
-        )
-        return end, samples
 
 
 def check_joint_goal(goal: JointGoal, q: Array, limits: JointLimits) -> None:

@@ -48,7 +48,7 @@ class PlannerPart(Part):
     def restart(self, reason: str) -> None:
         """A planner that holds the pose of its next tick; a goal in progress is given up."""
         before, self.planner = self.planner, MotionPlanner(*self._arguments)
-        if before.has_goal:
+        for _ in range(before.answers_owed):
             self.planner.give_up(f"the planner restarted: {reason}")
 
     def safe(self, tick: Tick) -> Iterator[Output]:

@@ -23,6 +23,8 @@ class GoalFeedback:
     duration: float  # s, the whole goal
     planned_error: float  # m, of the last planned step against the path
     tracking_error: float  # m, distance of the estimated end effector from its present target
+    distance: float = np.nan  # m, of the estimated vehicle from the pose that it goes to, if any
+    turn: float = np.nan  # rad, likewise, about the vertical axis
 
 
 @dataclass(frozen=True)

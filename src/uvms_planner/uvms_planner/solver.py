@@ -13,7 +13,7 @@ from uvms_core.plugin import create
 from uvms_core.signals import Array, DisturbanceBudget
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model
-from uvms_dynamics.geometry import build_geometry, clearances
+from uvms_dynamics.geometry import Geometry, build_geometry, clearances
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_dynamics.payload import LoadedModel
 from uvms_planner.choice import Choice
@@ -25,6 +25,7 @@ from uvms_planner.fitness import self_disturbance
 from uvms_planner.interfaces import StepMethod
 from uvms_planner.joined_path import JoinedPath
 from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScales
+from uvms_planner.motion_tilt import Tilt
 from uvms_planner.problem import VEHICLE, StepProblem
 from uvms_planner.segment import Knot
 from uvms_planner.whole_path import PathPlan, PathProblem, Posture, Surroundings, ToolPath
@@ -79,6 +80,15 @@ class StepSolver:
             self.around = self._surroundings()
             changed = True
         return changed
+
+    @property
+    def geometry(self) -> Geometry:
+        """Shapes of the vehicle and of what stands around it."""
+        return self._geometry
+
+    def tilt(self) -> Tilt:
+        """How far the vehicle would tilt on its way, with the thrusters that it has now."""
+        return Tilt(self._vehicle, self._health)
 
     def _surroundings(self) -> Surroundings:
         return surroundings(self._vehicle, self._geometry, self._margins, health=self._health)

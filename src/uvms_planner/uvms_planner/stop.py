@@ -6,10 +6,11 @@ from numpy.typing import NDArray
 from uvms_core.end_effector_path import PathSample
 from uvms_core.signals import Array, to_nanoseconds, to_seconds
 from uvms_planner.knot_motion import meet
-from uvms_planner.limits import PEAK_BRAKING
 from uvms_planner.projection import project
 from uvms_planner.segment import Knot, Samples, evaluate, hermite, quintic
 from uvms_planner.solver import StepSolver
+
+ROUNDING = 1e-9  # share of a limit
 
 
 class Stop:
@@ -81,8 +82,32 @@ class Stop:
 
 
 def _steps_to_rest(start: Knot, solver: StepSolver, step: float) -> NDArray[np.int64]:
-    """Whole steps (m,) in which each variable can come to rest; 0 for those at rest."""
-    deceleration = solver.limits.jump / step**2
-    seconds = PEAK_BRAKING * np.abs(start.rate) / deceleration
+    """Whole steps (m,) in which each variable can come to rest; 0 for those at rest.
+
+    As many that the acceleration stays within its limit, or within that at the start where that is
+    beyond it.
+    """
+    allowed = np.maximum(solver.motion_limits.acceleration, np.abs(start.acceleration))
+    steps = np.zeros(len(start.rate), dtype=np.int64)
     moving = (start.rate != 0.0) | (start.acceleration != 0.0)
-    return np.where(moving, np.maximum(1, np.ceil(seconds / step)), 0).astype(np.int64)
+    count = 0
+    while moving.any():
+        count += 1
+        steps[moving] = count
+        peak = _greatest_acceleration(start.rate / (count * step), start.acceleration)
+        moving &= peak > allowed * (1.0 + ROUNDING)
+    return steps
+
+
+def _greatest_acceleration(mean: Array, first: Array) -> Array:
+    """Of a stop from the acceleration `first` (m,) by the mean acceleration -`mean` (m,).
+
+    The rate is cubic, so that the acceleration is a parabola of u = t / duration,
+    a(u) = a_0 - (4 a_0 + 6 m) u + (3 a_0 + 6 m) u^2, which ends at zero.
+    """
+    slope, bend = 4 * first + 6 * mean, 3 * first + 6 * mean
+    with np.errstate(divide="ignore", invalid="ignore"):
+        vertex = slope / (2 * bend)
+        value = first - slope**2 / (4 * bend)
+    inside = (vertex > 0.0) & (vertex < 1.0)
+    return np.maximum(np.abs(first), np.where(inside, np.abs(value), 0.0))

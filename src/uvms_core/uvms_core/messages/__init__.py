@@ -32,6 +32,7 @@ _CONVERSIONS: dict[type, Conversion] = {
     signals.Reference: Conversion(reference.reference_to, reference.reference_from),
     signals.PathGoal: Conversion(actions.path_to, actions.path_from),
     signals.JointGoal: Conversion(actions.joints_to, actions.joints_from),
+    signals.PoseGoal: Conversion(actions.pose_to, actions.pose_from),
 }
 
 

@@ -9,7 +9,7 @@ from uvms_core.errors import SignalError
 from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.rotations import matrix_to_quat, quat_multiply, quat_to_matrix
-from uvms_core.signals import Array, JointGoal, PathGoal, to_nanoseconds
+from uvms_core.signals import Array, JointGoal, PathGoal, PoseGoal, to_nanoseconds, to_seconds
 from uvms_core.topic import WORLD_FRAME, Action
 from uvms_core.world_frames import MAP_FRAME, R_MAP_MAP_NED
 
@@ -143,6 +143,48 @@ def joints_from(action: Action, msg: Any, names: Sequence[str]) -> JointGoal:
         for k, point in enumerate(trajectory.points)
     ]
     return JointGoal(times, np.ascontiguousarray(np.array(positions)[:, index]))
+
+
+def pose_to(action: Action, goal: PoseGoal, names: Sequence[str]) -> Plain:
+    """Goal of GoToPose."""
+    return {
+        "header": _stampless(WORLD_FRAME),
+        "pose": parts.pose(goal.position, goal.quaternion),
+        "duration": _duration(goal.duration_s),
+        "hold": _duration(goal.hold_s),
+        "max_speed": float(goal.speed_max_m_s),
+    }
+
+
+BODY_TURN = np.array([1.0, 0.0, 0.0, 0.0])
+"""Quaternion of base_link_fsd in base_link: half a turn about the axis forward."""
+
+
+def pose_from(action: Action, msg: Any, names: Sequence[str]) -> PoseGoal:
+    """From the goal of GoToPose; in `map` the pose is that of base_link, as REP-105 has it."""
+    rotate = _to_map_ned(action, msg.header.frame_id)
+    position = fields.vector(action, "pose.position", msg.pose.position)
+    attitude = fields.quaternion(action, "pose.orientation", msg.pose.orientation)
+    if rotate is not None:
+        position = _rotated(rotate, position[None])[0]
+        attitude = quat_multiply(quat_multiply(rotate, attitude), BODY_TURN)
+    return PoseGoal(
+        position,
+        attitude,
+        _seconds(action, "duration", msg.duration),
+        _seconds(action, "hold", msg.hold),
+        _not_negative(action, "max_speed", fields.number(action, "max_speed", msg.max_speed)),
+    )
+
+
+def _seconds(action: Action, path: str, value: Any) -> float:
+    return _not_negative(action, path, to_seconds(fields.stamp_of(value)))
+
+
+def _not_negative(action: Action, path: str, value: float) -> float:
+    if value < 0.0:
+        raise SignalError(f"{action.name}: {path} is {value:g}; it must be >= 0")
+    return value
 
 
 def _count(action: Action, path: str, values: Sequence[Any]) -> int:

@@ -1,4 +1,4 @@
-"""Node `motion_planner`: plans vehicle and joints every step; serves the two path actions."""
+"""Node `motion_planner`: plans vehicle and joints every step; serves the actions for goals."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -16,12 +16,13 @@ from uvms_core.messages import from_message
 from uvms_core.ros.convert import action_class
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
-from uvms_core.signals import NANOSECONDS
+from uvms_core.signals import NANOSECONDS, Goal, to_seconds
 from uvms_core.tick_gate import Tick
 from uvms_core.timeline import Jump
 from uvms_core.topics import Action
-from uvms_planner import PlannerConfig, PlannerStep
+from uvms_planner import MotionPlanner, PlannerConfig, PlannerStep
 from uvms_planner.part import PlannerPart
+from uvms_planner.proposal import Proposal
 
 
 @dataclass(frozen=True)
@@ -32,11 +33,25 @@ class _Planning:
     ended: Future
 
 
+@dataclass(frozen=True)
+class _Begun:
+    """A goal whose end its client has not been told."""
+
+    type: Any
+    handle: ServerGoalHandle
+    outcome: Future
+
+
+PLANNINGS = 3
+"""Times that a path is planned at most where the vehicle goes on meanwhile."""
+
+
 class MotionPlannerNode(PartNode):
     """odometry and joint_states in, reference out, every planner step.
 
-    Actions: `follow_end_effector_path` and `follow_joint_trajectory`, one goal at a time. A goal
-    that cannot be followed is rejected; the reason is logged and stands on /diagnostics.
+    Actions: `follow_end_effector_path`, `follow_joint_trajectory` and `go_to_pose`. A goal that
+    cannot be followed is rejected; the reason is logged and stands on /diagnostics. A goal that is
+    accepted ends the one before it, which goes on until then.
     """
 
     role = topics.MOTION_PLANNER
@@ -45,10 +60,8 @@ class MotionPlannerNode(PartNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self._handle: ServerGoalHandle | None = None
-        self._outcome: Any = None
+        self._begun: list[_Begun] = []  # the last one is active, the others have just ended
         self._planning: _Planning | None = None
-        self._type: Any = None
         self._stamp = 0
         self._accepted = 0
         self._servers = [self._serve(action) for action in topics.ACTIONS]
@@ -71,12 +84,12 @@ class MotionPlannerNode(PartNode):
         return {**super().more_counts(), diagnostics.GOALS_ACCEPTED: self._accepted}
 
     def _answer_goal(self, plan: PlannerStep) -> None:
-        if self._handle is None:
-            return
-        if plan.feedback is not None:
-            self._handle.publish_feedback(_filled(self._type.Feedback(), plan.feedback))
-        if plan.finished is not None and self._outcome is not None:
-            self._outcome.set_result(plan.finished)
+        """Feedback is of the newest goal; ends come in the order of the goals."""
+        if self._begun and plan.feedback is not None:
+            newest = self._begun[-1]
+            newest.handle.publish_feedback(_filled(newest.type.Feedback(), plan.feedback))
+        if self._begun and plan.finished is not None:
+            self._begun.pop(0).outcome.set_result(plan.finished)
 
     def _serve(self, action: Action) -> ActionServer:
         cls = action_class(action)
@@ -84,7 +97,7 @@ class MotionPlannerNode(PartNode):
             self,
             cls,
             action.name,
-            execute_callback=self._execute,
+            execute_callback=_not_begun,
             goal_callback=partial(self._admit_goal, action),
             handle_accepted_callback=lambda handle: self._begin(cls, handle),
             cancel_callback=self._cancel,
@@ -105,10 +118,11 @@ class MotionPlannerNode(PartNode):
     async def _plan_for(self, action: Action, goal: Any) -> None:
         """Begin the goal's motion once it is planned, beside the ticks."""
         planner = self.part.planner
-        proposal = planner.propose(from_message(action, goal, self.vehicle.joint_names))
+        wanted = from_message(action, goal, self.vehicle.joint_names)
+        proposal = planner.propose(wanted)
         planning = self._planning = _Planning(goal, Future(executor=self.executor))
         try:
-            await self._beside(partial(proposal.work, self._say_progress))
+            proposal = await self._worked_out(planner, wanted, proposal)
         except BaseException:
             planner.withdraw()
             raise
@@ -116,6 +130,19 @@ class MotionPlannerNode(PartNode):
             self._planning = None
             planning.ended.set_result(None)
         self.part.planner.begin(proposal)
+
+    async def _worked_out(self, planner: MotionPlanner, wanted: Goal, first: Proposal) -> Proposal:
+        """The proposal, planned; again from farther on where the vehicle has gone on meanwhile."""
+        proposal, attempt = first, 1
+        while True:
+            began = self._stamp
+            await self._beside(partial(proposal.work, self._say_progress))
+            near = planner.lateness(proposal) <= self.config(PlannerConfig).start_tolerance_m
+            if near or attempt == PLANNINGS:
+                return proposal
+            planner.withdraw()
+            proposal = planner.propose(wanted, to_seconds(self._stamp - began))
+            attempt += 1
 
     async def _refuse_repetition(self, planning: _Planning) -> GoalResponse:
         """A client without an answer asks again; the one answer is that to its first question.
@@ -146,10 +173,13 @@ class MotionPlannerNode(PartNode):
         self.get_logger().info(f"{text}: {share:.0%}", throttle_duration_sec=1.0)
 
     def _begin(self, cls: Any, handle: ServerGoalHandle) -> None:
-        self._type, self._handle, self._outcome = cls, handle, Future()
-        handle.execute()
+        self._begun.append(_Begun(cls, handle, Future(executor=self.executor)))
+        handle.execute(partial(self._execute, self._begun[-1]))
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        """Only the newest goal moves anything; those before it have ended."""
+        if not self._begun or self._begun[-1].handle.goal_id != handle.goal_id:
+            return CancelResponse.REJECT
         self.part.planner.cancel()
         return CancelResponse.ACCEPT
 
@@ -158,16 +188,20 @@ class MotionPlannerNode(PartNode):
         super().on_time_jump(jump)
         self._stamp = jump.after
 
-    async def _execute(self, handle: ServerGoalHandle) -> Any:
-        finished = await self._outcome
+    async def _execute(self, begun: _Begun, handle: ServerGoalHandle) -> Any:
+        finished = await begun.outcome
         if handle.is_cancel_requested:
             handle.canceled()
         elif finished.success:
             handle.succeed()
         else:
             handle.abort()
-        self._handle = None
-        return _filled(self._type.Result(), finished)
+        return _filled(begun.type.Result(), finished)
+
+
+def _not_begun(handle: ServerGoalHandle) -> Any:
+    """Never: each goal is executed by what `_begin` gives it."""
+    raise AssertionError(f"goal {handle.goal_id} was not begun")
 
 
 def _filled(msg: Any, source: Any) -> Any:
