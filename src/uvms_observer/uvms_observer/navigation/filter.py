@@ -19,11 +19,13 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
+from uvms_observer.navigation import suspicion
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.samples import Instruments, Reading, in_order
+from uvms_observer.navigation.samples import Instruments, Reading
 from uvms_observer.navigation.state import NavigationState
+from uvms_observer.navigation.time_line import Step, replayed, with_late
 
 
 class NavigationFilter:
@@ -44,11 +46,14 @@ class NavigationFilter:
         imu = installation(vehicle, config)
         self._estimator = Estimator(imu, self._instruments.measurements, config)
         self._latency = to_nanoseconds(config.latency_s)
-        self._history: deque[tuple[Estimator, list[Reading]]] = deque()
+        self._memory = max(self._latency, suspicion.MEMORY)
+        self._steps: deque[Step] = deque()
+        self._next_trial = 0  # ns
         self._stamp = -1  # of the last step
         self._newest: dict[str, int] = {}  # stamp of the newest sample, by sensor
         self.rejected = 0
         self.late = 0
+        self.corrected = 0
 
     @property
     def state(self) -> NavigationState:
@@ -138,7 +143,7 @@ class NavigationFilter:
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
-            counts[f"{name}_recovered"] = tally.recovered
+        counts["imu_held_back"], counts["corrected"] = self._estimator.held, self.corrected
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
         return counts
@@ -155,23 +160,38 @@ class NavigationFilter:
         raise SignalError(f"{what} not be before the filter's time less latency, {oldest} ns")
 
     def _run(self, stamp: int, readings: list[Reading]) -> None:
-        readings = self._rewind(readings)
-        self._history.append((self._estimator.copied(), readings))
-        for reading in readings:
-            self._estimator.take(reading)
-        self._estimator.advance(stamp)
-        while len(self._history) > 1 and _time(self._history[1][0]) < stamp - self._latency:
-            self._history.popleft()
-
-    def _rewind(self, readings: list[Reading]) -> list[Reading]:
-        """Go back before the first reading; returns all readings to use from there, in order."""
-        late = [reading for reading in readings if reading.stamp <= _time(self._estimator)]
+        late = [reading for reading in readings if reading.stamp <= self._estimator_time]
         self.late += len(late)
-        while readings and readings[0].stamp <= _time(self._estimator):
-            self._estimator, again = self._history.pop()
-            readings = in_order([*again, *readings])
-        return readings
+        if late:
+            self._go_back_for(late)
+            readings = [reading for reading in readings if reading.stamp > self._estimator_time]
+        steps, self._estimator = replayed(self._estimator, [(readings, stamp)])
+        self._steps.extend(steps)
+        self._question(stamp)
+        while len(self._steps) > 1 and self._steps[1].begin < stamp - self._memory:
+            self._steps.popleft()
 
+    @property
+    def _estimator_time(self) -> int:
+        return -1 if self._estimator.time is None else self._estimator.time
 
-def _time(estimator: Estimator) -> int:
-    return -1 if estimator.time is None else estimator.time
+    def _go_back_for(self, late: list[Reading]) -> None:
+        """Take readings that came late at their own stamps, and repeat everything since."""
+        again = [self._steps.pop()]
+        while self._steps and again[0].begin >= late[0].stamp:
+            again.insert(0, self._steps.pop())
+        steps, self._estimator = replayed(again[0].before, with_late(again, late))
+        self._steps.extend(steps)
+
+    def _question(self, stamp: int) -> None:
+        """Whether the estimate is wrong, where a sensor is rejected."""
+        if stamp < self._next_trial:
+            return
+        for suspect in suspicion.suspects(self._estimator, stamp):
+            self._next_trial = stamp + suspicion.AGAIN
+            found = suspicion.tried(list(self._steps), suspect, self._estimator)
+            if found is not None:
+                steps, self._estimator = found
+                self._steps = deque(steps)
+                self.corrected += 1
+                return

@@ -62,10 +62,4 @@ class NavigationConfig(PluginConfig, StartConfig):
         lt=1.0,
         description="share of good measurements that the chi-square gate accepts",
     )
-    gate_timeout_s: float = Field(
-        5.0,
-        gt=0.0,
-        description="after rejecting a sensor for this long, the filter widens its covariance and "
-        "accepts the sensor, s",
-    )
     noise_floor: NoiseFloor = NoiseFloor()
