@@ -2,11 +2,13 @@
 
 from collections import deque
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from uvms_core import checks
+from uvms_core.diagnostics import Trouble
 from uvms_core.errors import SignalError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import (
@@ -16,6 +18,7 @@ from uvms_core.signals import (
     Odometry,
     PressureSample,
     to_nanoseconds,
+    to_seconds,
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
@@ -23,7 +26,8 @@ from uvms_observer.navigation import suspicion
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.samples import Instruments, Reading
+from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
+from uvms_observer.navigation.sensor_health import Health, health_of, trouble_of
 from uvms_observer.navigation.state import NavigationState
 from uvms_observer.navigation.time_line import Step, replayed, with_late
 
@@ -54,6 +58,7 @@ class NavigationFilter:
         self.rejected = 0
         self.late = 0
         self.corrected = 0
+        self.normalized = 0
 
     @property
     def state(self) -> NavigationState:
@@ -119,6 +124,7 @@ class NavigationFilter:
         for reading in self._instruments.readings(groups):
             try:
                 self._check_stamp(reading, stamp, newest)
+                reading = self._of_unit_length(reading)
                 checks.check(reading.name, reading.sample)
             except SignalError as fault:
                 faults.append(fault)
@@ -127,6 +133,14 @@ class NavigationFilter:
                 good.append(reading)
         self.rejected += len(faults)
         return good, faults
+
+    def _of_unit_length(self, reading: Reading) -> Reading:
+        """Some drivers round their quaternions; what is nearly a rotation is taken as one."""
+        if reading.name != INERTIAL.name or not is_nearly_unit(reading.sample.quaternion):
+            return reading
+        self.normalized += 1
+        unit = reading.sample.quaternion / np.linalg.norm(reading.sample.quaternion)
+        return reading._replace(sample=replace(reading.sample, quaternion=unit))
 
     def _step(self, stamp: int, readings: list[Reading]) -> Odometry:
         if self._estimator.time is None and INERTIAL.name not in {each.name for each in readings}:
@@ -137,13 +151,29 @@ class NavigationFilter:
         self._run(stamp, readings)
         return self._estimator.odometry()
 
+    def health(self) -> dict[str, Health]:
+        """How each sensor is doing at the last step."""
+        return {
+            name: health_of(
+                tally,
+                to_seconds(self._stamp - self._newest.get(name, 0)),
+                self._instruments.periods[name],
+            )
+            for name, tally in self._estimator.tallies.items()
+        }
+
+    def trouble(self) -> Trouble | None:
+        """Which sensors are not used, and why."""
+        return trouble_of(self.health())
+
     def status(self) -> dict[str, int | float]:
         """Counters for diagnostics, and the uncertainty (std) of the position in m."""
         counts: dict[str, int | float] = {"refused": self.rejected, "late": self.late}
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
-        counts["imu_held_back"], counts["corrected"] = self._estimator.held, self.corrected
+        counts["imu_held_back"], counts["imu_normalized"] = self._estimator.held, self.normalized
+        counts["corrected"] = self.corrected
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
         return counts
