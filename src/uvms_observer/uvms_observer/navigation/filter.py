@@ -217,9 +217,10 @@ class NavigationFilter:
         """Whether the estimate is wrong, where a sensor is rejected."""
         if stamp < self._next_trial:
             return
-        for suspect in suspicion.suspects(self._estimator, stamp):
-            self._next_trial = stamp + suspicion.AGAIN
-            found = suspicion.tried(list(self._steps), suspect, self._estimator)
+        self._next_trial = stamp + suspicion.AGAIN
+        steps = list(self._steps)
+        for suspect in suspicion.suspects(steps, self._estimator, stamp):
+            found = suspicion.tried(steps, suspect, self._estimator)
             if found is not None:
                 steps, self._estimator = found
                 self._steps = deque(steps)
