@@ -18,6 +18,7 @@ class NoiseFloor(Config):
     velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
     depth_m: float = Field(1e-4, gt=0.0, description="pressure sensor, m of water")
     position_m: float = Field(1e-2, gt=0.0, description="GPS, m")
+    fix_m: float = Field(1e-3, gt=0.0, description="position fix under water, m")
 
 
 class NavigationConfig(PluginConfig, StartConfig):
