@@ -37,6 +37,7 @@ setup(
             "dvl = uvms_dynamics.simulation.sensors.dvl:DvlSensor",
             "pressure = uvms_dynamics.simulation.sensors.pressure:PressureSensor",
             "gps = uvms_dynamics.simulation.sensors.gps:GpsSensor",
+            "position_fix = uvms_dynamics.simulation.sensors.position_fix:PositionFixSensor",
         ],
         "uvms.kernels": ["uvms_dynamics = uvms_dynamics.kernels"],
     },

@@ -46,6 +46,7 @@ setup(
             "dvl = uvms_observer.navigation.measurements.dvl:DvlVelocity",
             "pressure = uvms_observer.navigation.measurements.pressure:PressureDepth",
             "gps = uvms_observer.navigation.measurements.gps:GpsPosition",
+            "position_fix = uvms_observer.navigation.measurements.position_fix:FixPosition",
         ],
         "uvms.kernels": ["uvms_observer = uvms_observer"],
     },

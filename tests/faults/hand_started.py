@@ -19,8 +19,8 @@ from uvms_core.cdr import codec
 from uvms_core.errors import UvmsError
 from uvms_core.messages import from_message
 from uvms_core.ros.convert import message_class
-from uvms_core.ros.node import qos_profile
 from uvms_core.ros.spin import Spinner
+from uvms_core.ros.subscribe import qos_profile
 
 
 class Ear(Node):

@@ -14,8 +14,8 @@ from rclpy.signals import SignalHandlerOptions
 
 from uvms_core.messages import from_message, to_message
 from uvms_core.ros.convert import message_class, to_ros
-from uvms_core.ros.node import qos_profile
 from uvms_core.ros.spin import Spinner
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.topics import Topic
 
 

@@ -141,7 +141,7 @@ def test_a_role_without_our_service_counts_as_soon_as_it_publishes_what_others_r
         spin_until(spinner, lambda: "thrust_allocator" not in roll_call.foreign)
         spin_until(spinner, lambda: "wrench_command" in roll_call.poll().get("controller", ""))
         from uvms_core.ros.convert import message_class
-        from uvms_core.ros.node import qos_profile
+        from uvms_core.ros.subscribe import qos_profile
 
         for topic in (topics.WRENCH_COMMAND, topics.JOINT_COMMAND):
             kind, qos = message_class(topic), qos_profile(topic.qos)

@@ -18,7 +18,7 @@ from uvms_bringup.ros.run import check_own_plant
 from uvms_bringup.scenario import load_scenario
 from uvms_core import registry, topics
 from uvms_core.ros.convert import message_class
-from uvms_core.ros.node import qos_profile
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.signals import to_seconds
 from uvms_msgs.srv import ApplyEvent
 

@@ -23,7 +23,7 @@ from rclpy.task import Future
 from uvms_core import topics
 from uvms_core.messages import from_message
 from uvms_core.ros.convert import message_class
-from uvms_core.ros.node import qos_profile
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.ros.spin import Spinner, start
 
 start(["listener"])

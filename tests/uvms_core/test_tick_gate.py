@@ -358,3 +358,24 @@ def test_in_real_time_the_newest_joints_are_taken_whatever_the_plant_says():
     gate.push("joints", 0, "j0")
     gate.skip(DT, {"joints": -1})
     assert [tick["joints"] for tick in gate.push("odometry", DT, "o1")] == ["j0"]
+
+
+def off_grid(lockstep, stamps):
+    """Ticks of a gate whose trigger has stamps of its own, and the samples of each."""
+    gated = TickGate({"imu": Periodic(10)}, "imu", lockstep=lockstep, every=DT)
+    ticks = [tick for stamp in stamps for tick in gated.push("imu", stamp, stamp)]
+    return {tick.stamp: tick["imu"] for tick in ticks}
+
+
+def test_in_real_time_a_trigger_need_not_hit_the_multiples():
+    """The first one after a multiple begins that tick; what is later waits for the next one."""
+    stamps = [k * 31 + 7 for k in range(40)]
+    ticks = off_grid(False, stamps)
+    begun = range(DT, stamps[-1], DT)
+    assert list(ticks) == list(begun)
+    for stamp in begun:
+        assert ticks[stamp] == tuple(s for s in stamps if stamp - DT < s <= stamp)
+
+
+def test_in_lockstep_only_multiples_are_ticks():
+    assert off_grid(True, [k * 30 + 7 for k in range(40)]) == {}

@@ -12,7 +12,7 @@ from uvms_dynamics.kernels.rotations import (
     rotation_vector_to_quat,
     skew,
 )
-from uvms_observer.navigation.propagation import ProcessNoise
+from uvms_observer.navigation.propagation import BEYOND, ProcessNoise
 from uvms_observer.navigation.state import (
     ACCELEROMETER_BIAS,
     ATTITUDE,
@@ -42,20 +42,32 @@ def plus(state: NavigationState, e: Array) -> NavigationState:
     )
 
 
+def decayed(bias: Array, variance: Array, phi: float) -> Array:
+    """Gauss-Markov, but for a bias that is far beyond its deviation: that one has stepped."""
+    return np.where(np.square(bias) < BEYOND**2 * variance, phi * bias, bias)
+
+
 def propagated_mean(
-    state: NavigationState, rate: Array, force: Array, dt: float, gravity: float, phi: float
+    state: NavigationState,
+    rate: Array,
+    force: Array,
+    dt: float,
+    gravity: float,
+    phi: float,
+    variance: Array | None = None,
 ) -> NavigationState:
     """Nominal state after dt under mean rate and mean specific force, covariance unchanged."""
     half = rotation_vector_to_quat(0.5 * dt * (rate - state.gyro_bias))
     middle = quat_multiply(state.quaternion, half)
     force_world = quat_to_matrix(middle) @ (force - state.accelerometer_bias)
     acceleration = force_world + np.array([0.0, 0.0, gravity])
+    variance = np.full(9, np.inf) if variance is None else variance
     return NavigationState(
         state.position + state.velocity * dt + 0.5 * acceleration * dt**2,
         state.velocity + acceleration * dt,
         quat_multiply(middle, half),
-        phi * state.gyro_bias,
-        phi * state.accelerometer_bias,
+        decayed(state.gyro_bias, variance[:3], phi),
+        decayed(state.accelerometer_bias, variance[3:6], phi),
         phi * state.compass_bias,
         state.instrument_bias,
         state.covariance,
@@ -105,7 +117,7 @@ def propagated(
     phi = float(np.exp(-dt / noise.bias_time_constant))
     F = transition_matrix(state, rate, force, dt, phi)
     covariance = F @ state.covariance @ F.T + process_covariance(noise, dt, phi)
-    mean = propagated_mean(state, rate, force, dt, gravity, phi)
+    mean = propagated_mean(state, rate, force, dt, gravity, phi, noise.bias_variance)
     return mean._replace(covariance=covariance)
 
 

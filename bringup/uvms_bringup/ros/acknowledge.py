@@ -14,7 +14,7 @@ from uvms_core import topics
 from uvms_core.cdr import codec
 from uvms_core.messages import to_message
 from uvms_core.ros.convert import message_class
-from uvms_core.ros.node import qos_profile
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import to_seconds
 from uvms_core.topic import NodeTopics, Qos, Topic

@@ -23,11 +23,13 @@ from uvms_bringup.stopped import Stopped
 from uvms_core import diagnostics, topics
 from uvms_core.messages import from_message, to_message
 from uvms_core.ros.convert import action_class, message_class, to_ros
-from uvms_core.ros.node import qos_profile
 from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.signals import Goal, to_seconds
+from uvms_core.signals import JointGoal, PathGoal, to_seconds
+||||||| 79257fc
 from uvms_core.topic import NodeTopics, Topic
 from uvms_core.vehicle import Vehicle
 

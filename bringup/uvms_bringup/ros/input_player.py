@@ -12,8 +12,8 @@ from uvms_bringup.ros.recorder import stamp_of
 from uvms_bringup.ros.schedule import TickOf, TickRecord
 from uvms_core import topics
 from uvms_core.ros.convert import message_class
-from uvms_core.ros.node import qos_profile
 from uvms_core.ros.roll_call import RollCall
+from uvms_core.ros.subscribe import qos_profile
 
 
 class InputPlayer(Node):

@@ -9,7 +9,7 @@ from rclpy.node import Node
 from uvms_analysis.log.schema import qos_yaml
 from uvms_core import topics
 from uvms_core.ros.convert import message_class
-from uvms_core.ros.node import qos_profile
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.signals import NANOSECONDS
 from uvms_core.topics import Topic
 

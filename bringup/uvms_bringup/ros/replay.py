@@ -20,8 +20,8 @@ from uvms_bringup.ros.node_replay import replay_into
 from uvms_bringup.ros.recorder import stamp_of
 from uvms_core import topics
 from uvms_core.ros.convert import interface_class
-from uvms_core.ros.node import qos_profile
 from uvms_core.ros.spin import Spinner, start
+from uvms_core.ros.subscribe import qos_profile
 
 DISCOVERY_S = 3.5
 """Least wall time for subscribers to find the publishers: DDS announces itself every 3 s."""

@@ -16,8 +16,9 @@ from uvms_core.errors import UvmsError
 from uvms_core.messages import from_message
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.main import main_of
-from uvms_core.ros.node import NodeConfig, qos_profile
+from uvms_core.ros.node import NodeConfig
 from uvms_core.ros.parameters import declare_config
+from uvms_core.ros.subscribe import qos_profile
 from uvms_core.tick_gate import Delayed, Same, Tick, TickGate
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle, load_vehicle

@@ -67,7 +67,8 @@ class TickGate:
         lockstep: wait for all inputs of the stamp (True), or use the newest (False).
         in_loop: the plant waits for this node's answer, so a newer trigger means that the plant
             timed out on the older tick. A node outside the loop keeps its open ticks instead.
-        every: only stamps at multiples of this are ticks (ns), for a trigger that is more frequent.
+        every: only multiples of this are ticks (ns), for a trigger that is more frequent; in real
+            time the trigger need not hit them.
     """
 
     def __init__(
@@ -107,7 +108,8 @@ class TickGate:
         """Take an input; returns the ticks that it completes, in order."""
         if not self._begun:
             self._listen_from(stamp)
-        is_late = name == self._trigger and stamp % self._every == 0 and not self._is_new(stamp)
+        tick = self._tick_of(stamp) if name == self._trigger else None
+        is_late = tick is not None and not self._is_new(tick)
         if not self._inputs[name].push(stamp, value):
             self.duplicates += 1
         return [] if is_late and not self._open else self._release()
@@ -144,12 +146,29 @@ class TickGate:
 
         They have its last good value, unless that is too old.
         """
-        if name == self._trigger and stamp % self._every == 0 and not self._is_new(stamp):
+        tick = self._tick_of(stamp) if name == self._trigger else None
+        if tick is not None and not self._is_new(tick):
             return []
         self._excuses = True
         self.held += 1
         self._inputs[name].excuse(stamp)
         return self._release()
+
+    def _tick_of(self, stamp: int) -> int | None:
+        """The tick that a trigger of this stamp begins; None where it begins none.
+
+        A clock of its own does not hit multiples of `every`. In real time the first trigger after
+        a multiple begins that tick: nothing that belongs to it comes any more.
+        """
+        over = stamp % self._every
+        if over == 0:
+            return stamp
+        if self._lockstep:
+            return None
+        tick = stamp - over
+        if self._last < 0:  # it began in the middle of a period
+            self._last = tick
+        return tick if tick > self._last else None
 
     def _is_new(self, stamp: int) -> bool:
         if stamp <= self._last:

@@ -96,8 +96,11 @@ class NavigationPart(Part):
         self._begun, self._known, self._good, self.estimate = False, True, None, None
 
     def trouble(self) -> Trouble | None:
-        """Where the filter does not know the position."""
-        return None if self._known else LOST
+        """Where the filter does not know the position, or does without a sensor."""
+        if not self._known:
+            return LOST
+        found = getattr(self.filter, "trouble", None)
+        return found() if found is not None and self._begun else None
 
     def safe(self, tick: Tick) -> Iterator[Output]:
         """The last good estimate, straight ahead, and less certain; nothing where it is too old."""

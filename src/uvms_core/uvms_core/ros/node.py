@@ -10,7 +10,6 @@ import numpy as np
 from pydantic import Field
 from rclpy.node import Node
 from rclpy.publisher import Publisher
-from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from std_srvs.srv import Trigger
 
 from uvms_core import diagnostics, topics
@@ -24,12 +23,13 @@ from uvms_core.plausibility import Plausibility
 from uvms_core.ros.convert import message_class
 from uvms_core.ros.parameters import declare_config
 from uvms_core.ros.roll_call import SEPARATOR, nobody_publishes, nobody_reads
+from uvms_core.ros.subscribe import Subscriber, qos_profile
 from uvms_core.ros.watchdog import LOOK_S, Watchdog
 from uvms_core.signals import BY_THRUSTER, NANOSECONDS, to_nanoseconds
 from uvms_core.tick_gate import Covering, Delayed, Input, Periodic, Tick, TickGate
 from uvms_core.timeline import Jump, Timeline
 from uvms_core.timing import CONTROL_PERIOD_S, ControlPeriod
-from uvms_core.topics import Qos, Topic
+from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle, load_vehicle
 
 C = TypeVar("C", bound=Config)
@@ -37,16 +37,6 @@ DIAGNOSTICS_PERIOD = NANOSECONDS
 COMPLAINTS_S = 0.2
 """Wall time between two reports of inputs that are refused, s: a flood of invalid messages must not
 become one of diagnostics. Every one is counted."""
-
-
-def qos_profile(qos: Qos) -> QoSProfile:
-    """The rclpy form of a topic's quality of service."""
-    durability = (
-        DurabilityPolicy.TRANSIENT_LOCAL if qos.transient_local else DurabilityPolicy.VOLATILE
-    )
-    return QoSProfile(
-        depth=qos.depth, reliability=ReliabilityPolicy.RELIABLE, durability=durability
-    )
 
 
 class NodeConfig(Config):
@@ -169,8 +159,8 @@ class UvmsNode(Node):
         self._subscribe(topic, lambda data: self.guard(lambda: take(data)))
 
     def _subscribe(self, topic: Topic, receive: Callable[[bytes], None]) -> None:
-        self._receivers[topic] = self.create_subscription(
-            message_class(topic), topic.name, receive, qos_profile(topic.qos), raw=True
+        self._receivers[topic] = Subscriber(
+            self, message_class(topic), topic, receive, self.lockstep
         )
 
     def _reader(self, topic: Topic) -> Callable[[bytes], Any]:
@@ -271,7 +261,7 @@ class UvmsNode(Node):
 
     def _full_name(self, name: str) -> str:
         """The name of a topic on the graph, with namespace and remappings."""
-        return next(sub.topic_name for t, sub in self._receivers.items() if t.name == name)
+        return next(sub.name for t, sub in self._receivers.items() if t.name == name)
 
     def offer(self, topic: Topic) -> None:
         """Be ready to `send` on a topic that is not among the outputs of the node's row."""

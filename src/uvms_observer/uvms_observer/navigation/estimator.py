@@ -9,14 +9,23 @@ import numpy as np
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
 from uvms_observer.navigation.alignment import aligned
+from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
+from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S
 from uvms_observer.navigation.samples import Reading
-from uvms_observer.navigation.state import NavigationState, empty_state
+from uvms_observer.navigation.state import (
+    INERTIAL_BIASES,
+    POSITION,
+    VELOCITY,
+    NavigationState,
+    empty_state,
+)
+from uvms_observer.navigation.unknown_motion import GAP, gap_spread, spread
 
 
 class Estimator:
@@ -35,15 +44,18 @@ class Estimator:
         self._measurements = measurements
         self._config = config
         self._gates = {
-            name: InnovationGate(each.size, config.gate_probability, config.gate_timeout_s)
+            name: InnovationGate(each.size, config.gate_probability)
             for name, each in measurements.items()
         }
         self.tallies = dict.fromkeys(measurements, Tally())
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
-        self._rate = np.zeros(3)  # readings of the last IMU sample
+        self._rate = np.zeros(3)  # last readings of the IMU that are believed
         self._force = np.zeros(3)
+        self._inertial = 0  # ns, stamp of the last IMU sample
+        self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise)
+        self._memory: ScreenMemory = remember(self._rate, self._force)
 
     def copied(self) -> "Estimator":
         """An estimator that goes on alone from here."""
@@ -79,29 +91,63 @@ class Estimator:
         for each in self._measurements.values():
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance
-        self.time = sample.stamp
+        self.time = self._inertial = sample.stamp
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
+        self._memory = remember(self._rate, self._force)
 
     def _carry(self, sample: ImuSample) -> None:
         """With the readings at both ends of the interval: second order in its length."""
-        rate, force = sample.angular_velocity, sample.linear_acceleration
-        self._propagate(sample.stamp, rate, force)
-        self._rate, self._force = rate, force
+        dt = to_seconds(sample.stamp - self._inertial)
+        screened, self._memory = self._screen.judge(
+            self._memory, sample.angular_velocity, sample.linear_acceleration, dt
+        )
+        self._propagate(sample.stamp, screened.rate, screened.force)
+        self._rate, self._force, self._inertial = screened.rate, screened.force, sample.stamp
+        if screened.turn is not None and screened.change is not None:
+            spread(tuple(self.state), screened.turn, screened.change, dt)
+        if screened.step is not None:
+            doubt = np.square(np.concatenate(screened.step))
+            self.state.covariance[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(doubt)
 
     def _propagate(self, stamp: int, rate: Array, force: Array) -> None:
         """To the stamp, at which the inertial unit reads this."""
         if self.time is None or stamp <= self.time:
             return
-        dt, self.time, imu = to_seconds(stamp - self.time), stamp, self._imu
+        begin, self.time, imu = self.time, stamp, self._imu
+        dt = to_seconds(stamp - begin)
         readings = self._rate, rate, self._force, force
         propagate(tuple(self.state), *readings, dt, imu.gravity, *imu.process)
+        if (gone := to_seconds(stamp - self._inertial)) > GAP * imu.period:
+            unknown = gap_spread(to_seconds(begin - self._inertial), gone, imu.gravity)
+            spread(tuple(self.state), *unknown, dt)
+
+    def doubt_imu(self) -> None:
+        """Take the inertial biases to be unknown from now on."""
+        P = self.state.covariance
+        P[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(self._imu.faulty_bias_variance)
+
+    def doubt_velocity(self) -> None:
+        """Take the velocity to be unknown now."""
+        P = self.state.covariance
+        P[VELOCITY, VELOCITY] += np.eye(3) * LOST_SPEED_M_S**2
+
+    def doubt_place(self) -> None:
+        """Take position and velocity to be unknown now."""
+        self.doubt_velocity()
+        P = self.state.covariance
+        P[POSITION, POSITION] += np.diag(np.square([LOST_M, LOST_M, LOST_DEPTH_M]))
+
+    def size_of(self, name: str) -> int:
+        """Dimension of a sensor's measurement."""
+        return self._measurements[name].size
+
+    @property
+    def held(self) -> int:
+        """Inertial readings that were held back as spikes."""
+        return self._memory.held
 
     def _correct(self, reading: Reading) -> None:
         name = reading.name
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._rate)
-        gate, tally = self._gates[name], self.tallies[name]
-        self.tallies[name] = gate.apply(tally, reading.stamp, correct, self._widen)
-
-    def _widen(self, factor: float) -> None:
-        self.state.covariance[:] *= factor
+        self.tallies[name] = self._gates[name].apply(self.tallies[name], reading.stamp, correct)

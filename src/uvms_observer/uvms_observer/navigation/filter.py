@@ -2,11 +2,13 @@
 
 from collections import deque
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from uvms_core import checks
+from uvms_core.diagnostics import Trouble
 from uvms_core.errors import SignalError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import (
@@ -16,14 +18,18 @@ from uvms_core.signals import (
     Odometry,
     PressureSample,
     to_nanoseconds,
+    to_seconds,
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
+from uvms_observer.navigation import suspicion
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.samples import Instruments, Reading, in_order
+from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
+from uvms_observer.navigation.sensor_health import Health, health_of, trouble_of
 from uvms_observer.navigation.state import NavigationState
+from uvms_observer.navigation.time_line import Step, replayed, with_late
 
 
 class NavigationFilter:
@@ -44,11 +50,15 @@ class NavigationFilter:
         imu = installation(vehicle, config)
         self._estimator = Estimator(imu, self._instruments.measurements, config)
         self._latency = to_nanoseconds(config.latency_s)
-        self._history: deque[tuple[Estimator, list[Reading]]] = deque()
+        self._memory = max(self._latency, suspicion.MEMORY)
+        self._steps: deque[Step] = deque()
+        self._next_trial = 0  # ns
         self._stamp = -1  # of the last step
         self._newest: dict[str, int] = {}  # stamp of the newest sample, by sensor
         self.rejected = 0
         self.late = 0
+        self.corrected = 0
+        self.normalized = 0
 
     @property
     def state(self) -> NavigationState:
@@ -114,6 +124,7 @@ class NavigationFilter:
         for reading in self._instruments.readings(groups):
             try:
                 self._check_stamp(reading, stamp, newest)
+                reading = self._of_unit_length(reading)
                 checks.check(reading.name, reading.sample)
             except SignalError as fault:
                 faults.append(fault)
@@ -122,6 +133,14 @@ class NavigationFilter:
                 good.append(reading)
         self.rejected += len(faults)
         return good, faults
+
+    def _of_unit_length(self, reading: Reading) -> Reading:
+        """Some drivers round their quaternions; what is nearly a rotation is taken as one."""
+        if reading.name != INERTIAL.name or not is_nearly_unit(reading.sample.quaternion):
+            return reading
+        self.normalized += 1
+        unit = reading.sample.quaternion / np.linalg.norm(reading.sample.quaternion)
+        return reading._replace(sample=replace(reading.sample, quaternion=unit))
 
     def _step(self, stamp: int, readings: list[Reading]) -> Odometry:
         if self._estimator.time is None and INERTIAL.name not in {each.name for each in readings}:
@@ -132,13 +151,29 @@ class NavigationFilter:
         self._run(stamp, readings)
         return self._estimator.odometry()
 
+    def health(self) -> dict[str, Health]:
+        """How each sensor is doing at the last step."""
+        return {
+            name: health_of(
+                tally,
+                to_seconds(self._stamp - self._newest.get(name, 0)),
+                self._instruments.periods[name],
+            )
+            for name, tally in self._estimator.tallies.items()
+        }
+
+    def trouble(self) -> Trouble | None:
+        """Which sensors are not used, and why."""
+        return trouble_of(self.health())
+
     def status(self) -> dict[str, int | float]:
         """Counters for diagnostics, and the uncertainty (std) of the position in m."""
         counts: dict[str, int | float] = {"refused": self.rejected, "late": self.late}
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
-            counts[f"{name}_recovered"] = tally.recovered
+        counts["imu_held_back"], counts["imu_normalized"] = self._estimator.held, self.normalized
+        counts["corrected"] = self.corrected
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
         return counts
@@ -155,23 +190,39 @@ class NavigationFilter:
         raise SignalError(f"{what} not be before the filter's time less latency, {oldest} ns")
 
     def _run(self, stamp: int, readings: list[Reading]) -> None:
-        readings = self._rewind(readings)
-        self._history.append((self._estimator.copied(), readings))
-        for reading in readings:
-            self._estimator.take(reading)
-        self._estimator.advance(stamp)
-        while len(self._history) > 1 and _time(self._history[1][0]) < stamp - self._latency:
-            self._history.popleft()
-
-    def _rewind(self, readings: list[Reading]) -> list[Reading]:
-        """Go back before the first reading; returns all readings to use from there, in order."""
-        late = [reading for reading in readings if reading.stamp <= _time(self._estimator)]
+        late = [reading for reading in readings if reading.stamp <= self._estimator_time]
         self.late += len(late)
-        while readings and readings[0].stamp <= _time(self._estimator):
-            self._estimator, again = self._history.pop()
-            readings = in_order([*again, *readings])
-        return readings
+        if late:
+            self._go_back_for(late)
+            readings = [reading for reading in readings if reading.stamp > self._estimator_time]
+        steps, self._estimator = replayed(self._estimator, [(readings, stamp)])
+        self._steps.extend(steps)
+        self._question(stamp)
+        while len(self._steps) > 1 and self._steps[1].begin < stamp - self._memory:
+            self._steps.popleft()
 
+    @property
+    def _estimator_time(self) -> int:
+        return -1 if self._estimator.time is None else self._estimator.time
 
-def _time(estimator: Estimator) -> int:
-    return -1 if estimator.time is None else estimator.time
+    def _go_back_for(self, late: list[Reading]) -> None:
+        """Take readings that came late at their own stamps, and repeat everything since."""
+        again = [self._steps.pop()]
+        while self._steps and again[0].begin >= late[0].stamp:
+            again.insert(0, self._steps.pop())
+        steps, self._estimator = replayed(again[0].before, with_late(again, late))
+        self._steps.extend(steps)
+
+    def _question(self, stamp: int) -> None:
+        """Whether the estimate is wrong, where a sensor is rejected."""
+        if stamp < self._next_trial:
+            return
+        self._next_trial = stamp + suspicion.AGAIN
+        steps = list(self._steps)
+        for suspect in suspicion.suspects(steps, self._estimator, stamp):
+            found = suspicion.tried(steps, suspect, self._estimator)
+            if found is not None:
+                steps, self._estimator = found
+                self._steps = deque(steps)
+                self.corrected += 1
+                return

@@ -1,9 +1,10 @@
-"""The innovation gate of one sensor: rejects what is unlikely, but no sensor for ever.
+"""The innovation gate of one sensor: rejects what is unlikely.
 
 A residual's squared Mahalanobis distance is chi-square distributed when the models of filter and
-sensor are right. Beyond the gate a sample is rejected. If every sample is rejected for a long time,
-the estimate is taken to be wrong: its covariance is multiplied by distance / gate, which puts the
-residual at the gate, and the sample is used.
+sensor are right. Beyond the gate a sample is not used, however often: a sensor that lies for a
+minute must not move the estimate. The estimate grows less certain meanwhile, as its inertial unit
+is, so that a sensor that tells the truth is believed again as soon as it may be right. What if the
+estimate itself is wrong, `suspicion.py` looks into.
 """
 
 from collections.abc import Callable
@@ -11,7 +12,16 @@ from typing import NamedTuple
 
 from scipy.special import gammaincinv
 
-from uvms_core.signals import to_nanoseconds
+ROW = 3
+"""Samples in a row beyond the gate that exclude a sensor."""
+READMITTED = 0.95
+"""Share of good samples with which an excluded sensor may come back: it must agree well, and not
+slip in at the edge of an estimate that has become uncertain without it."""
+
+
+def quantile(size: int, probability: float) -> float:
+    """Of the chi-square distribution; scipy.stats has the same number and loads in a second."""
+    return 2.0 * float(gammaincinv(0.5 * size, probability))
 
 
 class Tally(NamedTuple):
@@ -19,8 +29,15 @@ class Tally(NamedTuple):
 
     accepted: int = 0
     gated: int = 0  # rejected
-    recovered: int = 0  # used after widening the covariance; also counted as accepted
-    since: int | None = None  # ns, stamp of the last one used, or of the first one
+    row: int = 0  # of these, the ones since the last one that was used
+    since: int | None = None  # ns, stamp of the first of these
+    used: int | None = None  # ns, stamp of the last one used
+    distance: float = 0.0  # sum of the squared distances of those that were used
+
+    @property
+    def excluded(self) -> bool:
+        """Whether the sensor's samples are not used at present."""
+        return self.row >= ROW
 
 
 class InnovationGate:
@@ -29,35 +46,23 @@ class InnovationGate:
     Args:
         size: dimension of the measurement.
         probability: share of good samples that is accepted.
-        timeout_s: how long all may be rejected, s.
     """
 
-    def __init__(self, size: int, probability: float, timeout_s: float) -> None:
-        # the chi-square quantile; scipy.stats has the same number and loads in a second
-        self.limit = 2.0 * float(gammaincinv(0.5 * size, probability))
-        self._timeout = to_nanoseconds(timeout_s)
+    def __init__(self, size: int, probability: float) -> None:
+        self.limit = quantile(size, probability)
+        self._readmission = quantile(size, READMITTED)
 
-    def apply(
-        self,
-        tally: Tally,
-        stamp: int,
-        correct: Callable[[float], float],
-        widen: Callable[[float], None],
-    ) -> Tally:
+    def apply(self, tally: Tally, stamp: int, correct: Callable[[float], float]) -> Tally:
         """Correct within the gate; returns the new tally.
 
         Args:
             tally: of this sensor so far.
             stamp: of the sample, ns.
             correct: corrects the state if the distance is within its argument; returns it.
-            widen: multiplies the state's covariance.
         """
-        distance = correct(self.limit)
-        accepted, gated, recovered, since = tally
-        if distance <= self.limit:
-            return Tally(accepted + 1, gated, recovered, stamp)
-        if since is None or stamp - since < self._timeout:
-            return Tally(accepted, gated + 1, recovered, stamp if since is None else since)
-        widen(distance / self.limit)
-        correct(float("inf"))
-        return Tally(accepted + 1, gated, recovered + 1, stamp)
+        accepted, gated, row, since, used, total = tally
+        limit = self._readmission if tally.excluded else self.limit
+        distance = correct(limit)
+        if distance <= limit:
+            return Tally(accepted + 1, gated, 0, None, stamp, total + distance)
+        return Tally(accepted, gated + 1, row + 1, since if row else stamp, used, total)

@@ -9,6 +9,11 @@ from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 
+FAULTY_GYRO_DEG_S = 1.0
+"""Std of the bias of a gyro that something has happened to."""
+FAULTY_ACCELEROMETER_M_S2 = 0.3
+"""The same of an accelerometer."""
+
 
 class Installation(NamedTuple):
     """The inertial unit as the filter needs it."""
@@ -18,6 +23,9 @@ class Installation(NamedTuple):
     process: ProcessNoise
     attitude_variance: Array  # (3,) rad^2, gyrocompass's white noise about the body axes
     rate_variance: float  # rad^2/s^2, white noise of one gyro sample
+    force_noise: float  # m/s^2, std of the white noise of one accelerometer sample
+    period: float  # s, between two samples
+    faulty_bias_variance: Array  # (6,) of a unit that something has happened to
 
 
 def installation(vehicle: Vehicle, config: NavigationConfig) -> Installation:
@@ -28,6 +36,11 @@ def installation(vehicle: Vehicle, config: NavigationConfig) -> Installation:
         process=_process_noise(vehicle, config),
         attitude_variance=attitude_variance(vehicle, config),
         rate_variance=rate_variance(vehicle),
+        force_noise=vehicle.sensors.imu.accelerometer_noise_m_s2,
+        period=1.0 / vehicle.sensors.imu.rate_hz,
+        faulty_bias_variance=np.repeat(
+            [np.radians(FAULTY_GYRO_DEG_S) ** 2, FAULTY_ACCELEROMETER_M_S2**2], 3
+        ),
     )
 
 

@@ -18,6 +18,7 @@ class NoiseFloor(Config):
     velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
     depth_m: float = Field(1e-4, gt=0.0, description="pressure sensor, m of water")
     position_m: float = Field(1e-2, gt=0.0, description="GPS, m")
+    fix_m: float = Field(1e-3, gt=0.0, description="position fix under water, m")
 
 
 class NavigationConfig(PluginConfig, StartConfig):
@@ -61,11 +62,5 @@ class NavigationConfig(PluginConfig, StartConfig):
         gt=0.5,
         lt=1.0,
         description="share of good measurements that the chi-square gate accepts",
-    )
-    gate_timeout_s: float = Field(
-        5.0,
-        gt=0.0,
-        description="after rejecting a sensor for this long, the filter widens its covariance and "
-        "accepts the sensor, s",
     )
     noise_floor: NoiseFloor = NoiseFloor()

@@ -24,6 +24,8 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
 from uvms_observer.navigation.state import SIZE, Fields, NavigationState
 
+BEYOND = 5.0
+
 
 class ProcessNoise(NamedTuple):
     """What makes the error grow between measurements."""
@@ -74,7 +76,8 @@ def propagate(
             mean = 0.5 * (force_before[k] + force[k])
             thrust[i] += R[i, k] * (mean - state.accelerometer_bias[k])
     phi = np.exp(-dt / bias_time_constant)
-    _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity, phi)
+    _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity)
+    _decay_biases(state, bias_variance, phi)
     _advance_covariance(state.covariance, R, thrust, dt, phi)
     _add_noise(state.covariance, dt, phi, gyro, accelerometer, bias_variance)
 
@@ -86,18 +89,25 @@ def _advance_mean(
     thrust: Array,
     dt: float,
     gravity: float,
-    phi: float,
 ) -> None:
     for i in range(3):
         acceleration = thrust[i] + (gravity if i == 2 else 0.0)
         state.position[i] += (state.velocity[i] + 0.5 * acceleration * dt) * dt
         state.velocity[i] += acceleration * dt
-        state.gyro_bias[i] *= phi
-        state.accelerometer_bias[i] *= phi
-        state.compass_bias[i] *= phi
     length = np.sqrt(quaternion.dot(quaternion))
     for i in range(4):
         state.quaternion[i] = quaternion[i] / length
+
+
+@exact_inner
+def _decay_biases(state: NavigationState, variance: Array, phi: float) -> None:
+    """Gauss-Markov; a bias beyond `BEYOND` of its deviations has stepped, and stays."""
+    for i in range(3):
+        if state.gyro_bias[i] ** 2 < BEYOND**2 * variance[i]:
+            state.gyro_bias[i] *= phi
+        if state.accelerometer_bias[i] ** 2 < BEYOND**2 * variance[3 + i]:
+            state.accelerometer_bias[i] *= phi
+        state.compass_bias[i] *= phi
 
 
 @exact_inner

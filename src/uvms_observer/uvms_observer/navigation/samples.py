@@ -5,11 +5,16 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 from uvms_core import registry
+from uvms_core.checks import is_unit
 from uvms_core.errors import SignalError
 from uvms_core.sensors import sensor_types
+from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
+
+ROUNDED = 0.02
+"""A quaternion of two decimals is off unit length by up to this."""
 
 _ORDER = itemgetter(0, 1)
 
@@ -37,6 +42,11 @@ class Instruments:
         for name in (each.name for each in types if each.navigation):
             make = registry.load(registry.MEASUREMENTS, name)
             self.measurements[name] = make(vehicle, vehicle.sensors.mounted[name], config)
+        self.periods = {
+            name: 1.0 / getattr(vehicle.sensors.mounted[name], "rate_hz", 1.0)
+            for name in self.measurements
+        }
+        """Time between two samples of each sensor, s."""
         self._ranks = {name: rank for rank, name in enumerate(self.measurements)}
 
     def readings(self, groups: Mapping[str, Sequence[Any]]) -> list[Reading]:
@@ -59,3 +69,9 @@ class Instruments:
 def in_order(readings: Iterable[Reading]) -> list[Reading]:
     """Readings by stamp; of the same stamp the IMU first, which carries the state there."""
     return sorted(readings, key=_ORDER)
+
+
+def is_nearly_unit(quaternion: Array) -> bool:
+    """Whether a quaternion (4,) is off unit length, but by less than `ROUNDED`."""
+    squared = float(quaternion.dot(quaternion))
+    return not is_unit(squared) and abs(squared**0.5 - 1.0) < ROUNDED

@@ -25,6 +25,7 @@ VELOCITY = slice(3, 6)
 ATTITUDE = slice(6, 9)
 GYRO_BIAS = slice(9, 12)
 ACCELEROMETER_BIAS = slice(12, 15)
+INERTIAL_BIASES = slice(9, 15)
 COMPASS_BIAS = slice(15, 18)
 DVL_SCALE = 18
 DEPTH_BIAS = 19

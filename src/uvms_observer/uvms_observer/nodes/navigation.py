@@ -6,6 +6,7 @@ from pydantic import Field
 
 from uvms_core import topics
 from uvms_core.config import Config
+from uvms_core.diagnostics import ERROR
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
 from uvms_core.tick_gate import Tick
@@ -47,7 +48,9 @@ class NavigationNode(PartNode):
         """One step of the filter; its estimate is kept for a start after this one."""
         super().take_tick(tick)
         estimate = self.part.estimate
-        if self._checkpoint is None or estimate is None or self.part.trouble() is not None:
+        trouble = self.part.trouble()
+        is_lost = trouble is not None and trouble.level == ERROR
+        if self._checkpoint is None or estimate is None or is_lost:
             return
         try:
             self._checkpoint.write(estimate)
