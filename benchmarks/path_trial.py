@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from method_paths import config_of, world_motion
 from random_paths import RandomGoal
+from scipy.spatial.transform import Rotation
 
 from uvms_core.signals import Array, JointStates, Odometry, Reference, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
@@ -15,11 +16,14 @@ from uvms_dynamics.kernels.jit import kernel
 from uvms_planner import GoalRejected, MotionPlanner
 from uvms_planner.constraints import free_attitude
 from uvms_planner.problem import VEHICLE
+from uvms_planner.projection import tool_pose
 from uvms_planner.proposal import Proposal, silent
 from uvms_planner.whole_path.surroundings import THRUST_FRACTION, thrust_shares
 
 EACH_S = 1e-3
 """Between two samples of the references that are judged."""
+NEAR_M = 0.03
+"""Clearance of arm and hull that a plan keeps where its start does."""
 
 
 @dataclass(frozen=True)
@@ -34,8 +38,8 @@ class Outcome:
     worst: float = np.nan  # share of the limit that they exceed most, or come nearest to
     limit: str = ""  # which
     tool_error: float = np.nan  # m
-    clearance: float = np.nan  # m, arm from hull and from itself
-    start_clearance: float = np.nan  # m, the same where they begin
+    clearance: float = np.nan  # m, least of arm from hull and from itself
+    kept_clearance: float = np.nan  # m, the same of the pairs that begin beyond `NEAR_M`
     stop: float = np.nan  # rad, least distance from a joint's stop
 
 
@@ -112,7 +116,8 @@ class Trial:
             True, end, seconds, finished,
             disturbance=disturbance_of(self.solver.model, references),
             worst=worst, limit=limit, tool_error=self._tool_error(references),
-            clearance=float(apart.min()), start_clearance=float(apart[0].min()),
+            clearance=float(apart.min()),
+            kept_clearance=float(apart[:, apart[0] > NEAR_M].min(initial=np.inf)),
             stop=float(stops.min()),
         )  # fmt: skip
 
@@ -130,6 +135,7 @@ class Trial:
             "thruster": self._thrust(references),
             "clearance": 1 + self._too_close(c),
             "free attitude": 1 + self._tilt(c[:, VEHICLE:]),
+            "turn of the tool": self._turn(c, references),
         }
         name = max(found, key=lambda each: found[each].max(initial=0.0))
         return float(found[name].max()), f"{name} {int(np.argmax(found[name]))}"
@@ -152,6 +158,18 @@ class Trial:
         over = angles - [limits.roll_max, limits.pitch_max]
         inside = np.flatnonzero((over <= 0.0).all(axis=1))
         return over[inside[0] :].max(axis=0) if len(inside) else np.zeros(2)
+
+    def _turn(self, c: Array, references: list[Reference]) -> Array:
+        """Share of the tolerance by which the tool is turned from a prescribed orientation."""
+        path, begin = self.proposal._path, to_seconds(references[0].stamp)
+        if not path.oriented:
+            return np.zeros(1)
+        times = np.concatenate([to_seconds(r.stamp) - begin + r.times for r in references])
+        wanted = Rotation.from_quat(path.samples(times[::10]).quaternion)
+        turned = [tool_pose(self.solver.model, each.copy())[1] for each in c[::10]]
+        off = (Rotation.from_matrix(turned) * wanted.inv()).magnitude()
+        tolerance = np.deg2rad(self.config.projection.orientation_tolerance_deg)
+        return np.array([off.max() / tolerance])
 
     def _own_clearances(self, c: Array) -> Array:
         geometry = build_geometry(self.vehicle)

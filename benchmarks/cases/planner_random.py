@@ -6,7 +6,7 @@ from collections.abc import Iterator
 import numpy as np
 from metrics import Metric, Target
 from path_oracle import possible
-from path_trial import Outcome, Trial
+from path_trial import NEAR_M, Outcome, Trial
 from random_paths import RandomGoal, random_goals
 from run import log
 
@@ -19,8 +19,6 @@ FEW = 10
 """A run that is not full takes this part of them."""
 COARSE_S = 0.05
 """Between two samples of what is only compared by J."""
-NEAR_M = 0.03
-"""Clearance of arm and hull that a plan keeps where its start does."""
 
 
 def measure(full: bool) -> Iterator[Metric]:
@@ -53,7 +51,7 @@ def _line(outcome: Outcome, still: float, oracle: str) -> dict:
         "worst": f"{outcome.worst:.4f} {outcome.limit}",
         "tool mm": round(1e3 * outcome.tool_error, 4),
         "clear mm": round(1e3 * outcome.clearance, 1),
-        "from mm": round(1e3 * outcome.start_clearance, 1),
+        "kept mm": round(1e3 * outcome.kept_clearance, 1),
         "stop deg": round(np.rad2deg(outcome.stop), 2), "seconds": round(outcome.seconds, 2),
     }  # fmt: skip
 
@@ -81,10 +79,11 @@ def metrics_of(name: str, results: list[Tried]) -> Iterator[Metric]:
                  f"{len(ratios)} paths that vehicle_only can follow",
                  target=Target("value", "<=", 0.0))  # fmt: skip
     yield Metric(f"{name}_median_against_held", float(np.median(ratios)), "1", "vehicle_only's J")
-    clear = [out.clearance for out in outcomes if out.start_clearance > NEAR_M]
-    yield Metric(f"{name}_clearance", 1e3 * min(clear), "mm",
-                 f"arm and hull, {len(clear)} plans that begin beyond it",
-                 target=Target("value", ">=", 1e3 * NEAR_M - 1.0))  # fmt: skip
+    yield Metric(f"{name}_clearance", 1e3 * min(out.kept_clearance for out in outcomes), "mm",
+                 "of arm and hull, pairs that begin beyond 30 mm",
+                 target=Target("value", ">=", 1e3 * NEAR_M - 0.1))  # fmt: skip
+    yield Metric(f"{name}_least_clearance", 1e3 * min(out.clearance for out in outcomes), "mm",
+                 "of all pairs of arm and hull")  # fmt: skip
     yield Metric(f"{name}_joint_stop", float(np.rad2deg(min(out.stop for out in outcomes))), "deg",
                  "least distance", target=Target("value", ">=", 1.9))  # fmt: skip
     for share in (50, 95, 100):

@@ -54,7 +54,7 @@ def slow_down(
             slow = middle
         else:
             fast = middle
-    return _fastest(problem, slow, seed, progress)
+    return _confirmed(problem, slow, seed, progress)
 
 
 def _possible(problem: PathProblem) -> bool:
@@ -66,25 +66,16 @@ def _possible(problem: PathProblem) -> bool:
     return plan.report.feasible
 
 
-def _fastest(
-    problem: PathProblem, slow: float, seed: int, progress: Callable[[float, str], None]
+def _confirmed(
+    problem: PathProblem, factor: float, seed: int, progress: Callable[[float, str], None]
 ) -> SlowerPlan | None:
-    """The full plan at the smallest factor up to `slow`, or at one slightly greater."""
-
-    def planned(factor: float) -> SlowerPlan | None:
-        share, text = 0.2, f"{factor:.2f} times slower"
-        progress(share, text)
-        plan = solve(slowed(problem, factor), seed, lambda s, _: progress(share + 0.8 * s, text))
-        return SlowerPlan(factor, plan) if plan.report.feasible else None
-
-    fast, found = 1.0, None
+    """The full plan at `factor`, or at the next greater one at which it keeps the limits."""
     for _ in range(CONFIRMATIONS):
-        found = planned(slow)
-        if found is not None:
-            break
-        fast, slow = slow, LITTLE * slow
-    while found is not None and found.factor > FINE_ENOUGH * fast:
-        middle = float(np.sqrt(fast * found.factor))
-        faster = planned(middle)
-        fast, found = (middle, found) if faster is None else (fast, faster)
-    return found
+        share, text = 0.2, f"{factor:.2f} times slower"
+        plan = solve(
+            slowed(problem, factor), seed, lambda s, _, t=text: progress(share + (1 - share) * s, t)
+        )
+        if plan.report.feasible:
+            return SlowerPlan(factor, plan)
+        factor *= LITTLE
+    return None
