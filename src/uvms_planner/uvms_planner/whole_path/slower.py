@@ -71,10 +71,8 @@ def _confirmed(
 ) -> SlowerPlan | None:
     """The full plan at `factor`, or at the next greater one at which it keeps the limits."""
     for _ in range(CONFIRMATIONS):
-        share, text = 0.2, f"{factor:.2f} times slower"
-        plan = solve(
-            slowed(problem, factor), seed, lambda s, _, t=text: progress(share + (1 - share) * s, t)
-        )
+        text = f"{factor:.2f} times slower"
+        plan = solve(slowed(problem, factor), seed, lambda s, _, t=text: progress(0.2 + 0.8 * s, t))
         if plan.report.feasible:
             return SlowerPlan(factor, plan)
         factor *= LITTLE
