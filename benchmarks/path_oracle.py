@@ -15,7 +15,7 @@ from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
 from uvms_planner.whole_path.search import SearchConfig, first_generation, postures_of
 from uvms_planner.whole_path.solve import THOROUGH, posture_held, size_of
 
-STARTS = 8
+STARTS = 4
 STEP_METHODS = ("least_norm", "sqp", "genetic_steps")
 KEPT = 1.001
 """Share of a limit up to which it counts as kept."""

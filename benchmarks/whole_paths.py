@@ -5,12 +5,10 @@ import numpy as np
 from uvms_bringup.scenario import load_scenario
 from uvms_core.end_effector_path import EndEffectorPath
 from uvms_core.rng import generator
-from uvms_dynamics import build_model
-from uvms_dynamics.geometry import build_geometry
 from uvms_dynamics.simulation.plant.config import initial_joints
-from uvms_planner.clearance import clearance_margins
-from uvms_planner.limits import MotionLimits
-from uvms_planner.whole_path import PathPlan, PathProblem, Posture, ToolPath, surroundings
+from uvms_planner.problem import VEHICLE
+from uvms_planner.solver import StepSolver
+from uvms_planner.whole_path import PathPlan, PathProblem, Posture, ToolPath
 from uvms_planner.whole_path.discrete import discretise
 from uvms_planner.whole_path.newton import solve_on_knots
 from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
@@ -45,14 +43,13 @@ def problem_of(name: str) -> PathProblem:
     changes = [f"vehicle={vehicle_name}", *([f"goal.path={path}"] if path else [])]
     scenario = load_scenario("manipulation", changes)
     vehicle, config = scenario.load_vehicle(), scenario.planner
-    model, geometry = build_model(vehicle), build_geometry(vehicle)
     tool = ToolPath(EndEffectorPath(scenario.goal.build(vehicle, scenario.plant)))
-    start = np.concatenate([[0.0], initial_joints(vehicle, scenario.plant)])
-    margins = clearance_margins(config.clearance, vehicle, geometry)
+    place = [*scenario.plant.initial_position_m, 0.0]
+    start = np.concatenate([place, initial_joints(vehicle, scenario.plant)])
+    solver = StepSolver(vehicle, config, scenario.seed)
     return PathProblem(
-        model, tool, tool.duration, Posture.at_rest(start),
-        MotionLimits.of(vehicle, model, config.limits),
-        around=surroundings(vehicle, geometry, margins),
+        solver.model, tool, tool.duration, Posture.at_rest(start[VEHICLE - 1 :]),
+        solver.limits_from(start), around=solver.around_from(start),
     )  # fmt: skip
 
 

@@ -64,11 +64,8 @@ def _within_limits(
     Thoroughly on the coarse pieces, where that takes little; what those can do, the fine can.
     """
     for number, start in enumerate(starts):
-        tick = ticker(
-            lambda share, n=number: progress(0.5 + (n + share) / 2 / len(starts), "limits"),
-            THOROUGH,
-        )
-        found = solve_on_knots(coarse, start, THOROUGH.scaled(size), tick)
+        progress(0.5 + number / 2 / len(starts), "within the limits")
+        found = solve_on_knots(coarse, start, THOROUGH.scaled(size))
         rough = PathPlan(coarse.problem, coarse.knots, found.coefficients, found.iterations)
         if rough.report.worst.share > 1 + FAR:
             continue
