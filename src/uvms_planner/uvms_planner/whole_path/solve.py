@@ -71,7 +71,10 @@ def _within_limits(
             continue
         begin = fine.taken_from(coarse.knots, found.coefficients)
         other = _on_fine(fine, begin, WITHIN.scaled(size), size)
-        plan = min(plan, other, key=_worst_share)
+        if other.report.feasible:
+            return other
+        same = PathPlan(fine.problem, fine.knots, begin, found.iterations)
+        plan = min(plan, other, same, key=_worst_share)
         if plan.report.feasible:
             return plan
     if plan.report.worst.share > 1 + FAR:
