@@ -92,13 +92,13 @@ def _worst_ratio(references: list[Reference], planner: MotionPlanner) -> float:
     limits, step = planner._solver.limits, planner._config.step_s
     worst = 0.0
     for r in references:
-        rate, acceleration = _world_motion(r)
+        rate, acceleration = world_motion(r)
         worst = max(worst, float(np.max(np.abs(rate) * step / limits.reach)))
         worst = max(worst, float(np.max(np.abs(acceleration) * step**2 / limits.jump)))
     return worst
 
 
-def _world_motion(r: Reference) -> tuple[Array, Array]:
+def world_motion(r: Reference) -> tuple[Array, Array]:
     """Rate and acceleration (k, m) of c: p_dot = R nu, p_ddot = R (nu_dot + omega x nu)."""
     yaw = 2.0 * np.arctan2(r.quaternion[:, 2], r.quaternion[:, 3])
     cos, sin = np.cos(yaw), np.sin(yaw)

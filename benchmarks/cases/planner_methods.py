@@ -8,7 +8,8 @@ from method_paths import PATHS, Followed, follow
 from method_steps import OWN, PRINTED, Result, measured, states
 from metrics import Metric
 
-METHODS = ("paper", "genetic_steps", "sqp", "least_norm", "arm_only", "vehicle_only")
+STEPWISE = ("paper", "genetic_steps", "sqp", "least_norm", "arm_only", "vehicle_only")
+METHODS = ("genetic", *STEPWISE)
 SEARCHES = ("paper", "genetic_steps", "sqp")
 SMALL = {"paper": {"population": 20, "generations": 20}}
 LARGE = {"paper": {"population": 400, "generations": 400}}
@@ -20,7 +21,7 @@ def measure(full: bool) -> Iterator[Metric]:
     """Steps with the cost as printed and with the planner's own, then the paths."""
     steps = states(1 if full else 12)
     clock = time.process_time  # of the processor: others may be at work
-    for cost, fitness, methods in (("printed", PRINTED, SEARCHES), ("own", OWN, METHODS)):
+    for cost, fitness, methods in (("printed", PRINTED, SEARCHES), ("own", OWN, STEPWISE)):
         for name, result in measured(methods, fitness, steps, clock).items():
             yield from _of_steps(f"{name}_{cost}", result)
     for size, sections in (("small", SMALL), ("large", LARGE)):
@@ -29,7 +30,10 @@ def measure(full: bool) -> Iterator[Metric]:
         yield from _of_steps(f"paper_{size}_printed", result)
     for path, spec in PATHS.items():
         for name in METHODS:
-            yield from _of_path(f"{name}_{path}", follow(name, spec))
+            began = clock()
+            followed = follow(name, spec)
+            yield Metric(f"seconds_{name}_{path}", clock() - began, "s", "to plan and to follow it")
+            yield from _of_path(f"{name}_{path}", followed)
 
 
 def _of_steps(name: str, result: Result) -> Iterator[Metric]:

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 from metrics import Metric, Target
-from whole_paths import PATHS, best_of_starts, held, problem_of
+from whole_paths import PATHS, best_of_starts, held, least_clearance, problem_of
 
 from uvms_planner.whole_path import solve
 from uvms_planner.whole_path.slower import slowed
@@ -37,6 +37,7 @@ def _of_path(name: str, starts: int) -> Iterator[Metric]:
     yield Metric(f"{name}_seconds", spent, "s", target=Target("value", "<=", 3.0))
     each_millisecond = np.linspace(0.0, plan.duration, round(1000 * plan.duration) + 1)
     worst = plan.report_at(each_millisecond).worst
+    yield Metric(f"{name}_clearance", 1e3 * least_clearance(plan), "mm", "of arm and hull")
     yield Metric(f"{name}_share_of_limit", worst.share, "1", f"{worst.name}, at 1 kHz",
                  target=Target("value", "<=", 1.001))  # fmt: skip
 

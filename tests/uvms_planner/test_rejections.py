@@ -109,7 +109,9 @@ def test_a_whole_path_that_is_too_fast_says_which_limit_and_how_much_slower_it_c
 def test_a_whole_path_beyond_the_depth_that_is_allowed_cannot_be_followed_at_any_speed():
     run = drive(limits={"depth_max_m": 10.3})
     text = rejection(path((0.0, 400.0), ((0, 0, 0), (0, 0, 3.0))), run)
-    assert text.startswith("path: it cannot be followed, however slowly; z of the vehicle: ")
+    assert text.startswith(
+        "path: it cannot be followed, however slowly; in 30 times the time, z of the vehicle: "
+    )
     assert text.endswith("allowed 10.3")
 
 

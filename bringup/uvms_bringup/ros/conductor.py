@@ -28,8 +28,6 @@ from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
 from uvms_core.ros.subscribe import qos_profile
 from uvms_core.signals import Goal, to_seconds
-from uvms_core.signals import JointGoal, PathGoal, to_seconds
-||||||| 79257fc
 from uvms_core.topic import NodeTopics, Topic
 from uvms_core.vehicle import Vehicle
 

@@ -6,8 +6,7 @@ from pydantic import Field
 from uvms_core.config import Config
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.plausible.stability import postures
-from uvms_dynamics.geometry import OWN, Geometry, clearances_along
+from uvms_dynamics.geometry import OWN, Geometry
 
 
 class ClearanceConfig(Config):
@@ -17,8 +16,7 @@ class ClearanceConfig(Config):
         0.03,
         ge=0.0,
         le=10.0,
-        description="m, links from the hull; where a posture of the vehicle file is closer, that is"
-        " enough",
+        description="m, links from the hull; where a path begins closer, almost that is enough",
     )
     arm_m: float = Field(
         0.03, ge=0.0, le=10.0, description="m, links from one another; the same holds"
@@ -37,8 +35,8 @@ class ClearanceConfig(Config):
 def clearance_margins(config: ClearanceConfig, vehicle: Vehicle, geometry: Geometry) -> Array:
     """Least distance (k,), m, of each pair of the geometry.
 
-    The postures of the vehicle file are ones that it may take, however coarse the shapes are: a
-    pair need not be clearer than in all of them.
+    What is closer where a path begins may stay almost as close (`StepSolver.around_from`), so that
+    no start is refused, however coarse the shapes are.
     """
     of_kind = {
         "hull": config.hull_m,
@@ -48,16 +46,8 @@ def clearance_margins(config: ClearanceConfig, vehicle: Vehicle, geometry: Geome
     }
     margins = np.array([of_kind[pair.kind] for pair in geometry.pairs])
     own = np.array([pair.kind in OWN for pair in geometry.pairs], dtype=bool)
-    margins[own] = np.minimum(margins[own], least_in_postures(vehicle, geometry)[own])
     if config.tool_m is not None:
         last = vehicle.arm.links[-1].name
         tool = np.array([pair.body == last for pair in geometry.pairs], dtype=bool)
         margins[tool & ~own] = config.tool_m
     return margins
-
-
-def least_in_postures(vehicle: Vehicle, geometry: Geometry) -> Array:
-    """Least distance (k,), m, of each pair in the postures of the vehicle file, at the origin."""
-    angles = np.array([q for _, q in postures(vehicle)])
-    configurations = np.hstack([np.zeros((len(angles), 4)), angles])
-    return clearances_along(geometry, configurations).min(axis=0)

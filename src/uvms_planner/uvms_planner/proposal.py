@@ -106,8 +106,11 @@ class Proposal:
     def _slower(self, problem: PathProblem, worst: LimitShare, progress: Progress) -> PathPlan:
         """The plan of the path as slowly as it must be, where the goal allows that."""
         slower = slow_down(problem, progress=progress)
-        if slower is None:
-            raise GoalRejected(f"path: it cannot be followed, however slowly; {worst}")
+        if not slower.plan.report.feasible:
+            raise GoalRejected(
+                f"path: it cannot be followed, however slowly; in {slower.factor:.3g} times the"
+                f" time, {slower.plan.report.worst}"
+            )
         if not isinstance(self._goal, PathGoal):
             raise AssertionError("only a path is planned so")
         allowed = self._goal.time_scale_max

@@ -129,11 +129,10 @@ class StepSolver:
         Where the vehicle would float beyond the limits of eq. (17) already, it may do so a little
         farther: nothing is gained by pressing it back faster than the cost does.
         """
-        roll, pitch = MORE_TILT * np.abs(self.free_attitude(configuration))
-        limits = self.motion_limits
-        return replace(
-            limits, roll_max=max(limits.roll_max, roll), pitch_max=max(limits.pitch_max, pitch)
-        )
+        tilt, limits = np.abs(self.free_attitude(configuration)), self.motion_limits
+        most = np.array([limits.roll_max, limits.pitch_max])
+        roll, pitch = np.where(tilt > most, MORE_TILT * tilt, most)
+        return replace(limits, roll_max=float(roll), pitch_max=float(pitch))
 
     def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
         """The method's plan over a whole path; only where `plans_paths`."""

@@ -10,7 +10,7 @@ FIRST_S = 0.4
 GROWTH = 1.4  # from one piece to the next
 PIECES = 50  # of a path that the tool goes evenly, at least
 PIECES_OF_TURN = 15  # of a turn, if the tool goes round
-SHORTEST_S, LONGEST_S = 0.8, 12.0  # of the pieces after the beginning
+SHORTEST_S, LONGEST_S = 0.3, 12.0  # of the pieces after the beginning
 READINGS = 2000  # of the tool's motion
 SPLIT = 4  # fine pieces of a coarse one: what the coarse spline is, the fine one can be
 

@@ -4,17 +4,21 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import kernel
 from uvms_planner.segment import Samples
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan_report import PlanReport, report_of
-from uvms_planner.whole_path.sample import THRUST, read_aim, sample_values, vehicle_motion
+from uvms_planner.whole_path.sample import THRUST, WRENCHES, read_aim, sample_values, vehicle_motion
+from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.spline import DEGREE, basis_at
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
 
 INSTANTS = 12  # of each piece at which a plan is examined
+CLOSELY = 8  # parts of what is between two instants, where a limit is near
+NEAR = 0.02  # share of a limit that is left where it is near
 
 
 @dataclass(frozen=True)
@@ -59,8 +63,17 @@ class PathPlan:
 
     @cached_property
     def report(self) -> PlanReport:
-        """What the plan costs, and how near it comes to each limit and where."""
-        return self.report_at(self.instants())
+        """What the plan costs, and how near it comes to each limit and where.
+
+        Where a limit is near, the plan is examined more closely: its greatest values may stand
+        between two instants, at a point of the tool's path, where the jerk leaps.
+        """
+        times = self.instants()
+        near = _near_a_limit(self.problem, self.values(times))
+        gaps = np.flatnonzero(near[1:] | near[:-1])
+        shares = np.arange(1, CLOSELY) / CLOSELY
+        between = times[gaps, None] + np.diff(times)[gaps, None] * shares
+        return self.report_at(np.sort(np.concatenate([times, between.ravel()])))
 
     def instants(self, each: int = INSTANTS) -> Array:
         """That many instants on each of the spline's pieces, and the last."""
@@ -71,6 +84,13 @@ class PathPlan:
     def report_at(self, times: Array) -> PlanReport:
         """The report of the instants `times` (k,) s, increasing."""
         return report_of(self.problem, times, self.posture(times), self.values(times))
+
+
+def _near_a_limit(problem: PathProblem, values: Array) -> NDArray[np.bool_]:
+    """Which of the instants (k,) come near a limit of the sampled values (k, v), or beyond it."""
+    bounds, sampled = sampled_bounds(problem), values[:, WRENCHES:]
+    room = np.minimum(bounds.upper - sampled, sampled - bounds.lower) / bounds.scale
+    return np.asarray((room < NEAR).any(axis=1))
 
 
 @kernel

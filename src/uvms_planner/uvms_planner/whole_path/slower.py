@@ -1,6 +1,5 @@
 """Where a path is too fast: how much slower it can be followed."""
 
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -20,7 +19,7 @@ CONFIRMATIONS = 5
 
 @dataclass(frozen=True)
 class SlowerPlan:
-    """A path followed in `factor` times its time."""
+    """A path followed in `factor` times its time; `plan` may break a limit at any factor."""
 
     factor: float
     plan: PathPlan
@@ -38,51 +37,46 @@ def slowed(problem: PathProblem, factor: float) -> PathProblem:
 
 def slow_down(
     problem: PathProblem, seed: int = 0, progress: Progress = lambda share, text: None
-) -> SlowerPlan | None:
+) -> SlowerPlan:
     """The plan with the smallest factor, within 3 %, at which the path can be followed.
 
-    None where it cannot be followed at any speed.
+    Where it cannot be followed at any speed, the plan at the greatest factor tells why.
     """
     fast, slow = 1.0, SLOWEST
     progress(0.0, f"{slow:g} times slower")
-    if not _possible(slowed(problem, slow)):
-        return None
+    slowest = _on_coarse(slowed(problem, slow))
+    if not slowest.report.feasible:
+        return SlowerPlan(slow, slowest)
     while slow > FINE_ENOUGH * fast:
         middle = float(np.sqrt(fast * slow))
         progress(0.1, f"{middle:.2f} times slower")
-        if _possible(slowed(problem, middle)):
+        if _on_coarse(slowed(problem, middle)).report.feasible:
             slow = middle
         else:
             fast = middle
-    return _fastest(problem, slow, seed, progress)
+    return _confirmed(problem, slow, seed, progress)
 
 
-def _possible(problem: PathProblem) -> bool:
-    """Whether a plan on the coarse pieces keeps the limits."""
+def _on_coarse(problem: PathProblem) -> PathPlan:
+    """A plan on the coarse pieces, within the limits where that is possible."""
     coarse = discretise(problem, coarse_breaks(problem))
     held = posture_held(coarse)
     found = solve_on_knots(coarse, held, THOROUGH.scaled(size_of(coarse, held)))
-    plan = PathPlan(problem, coarse.knots, found.coefficients, found.iterations)
-    return plan.report.feasible
+    return PathPlan(problem, coarse.knots, found.coefficients, found.iterations)
 
 
-def _fastest(
-    problem: PathProblem, slow: float, seed: int, progress: Callable[[float, str], None]
-) -> SlowerPlan | None:
-    """The full plan at the smallest factor up to `slow`, or at one slightly greater."""
-
-    def planned(factor: float) -> SlowerPlan | None:
-        share, text = 0.2, f"{factor:.2f} times slower"
-        progress(share, text)
-        plan = solve(slowed(problem, factor), seed, lambda s, _: progress(share + 0.8 * s, text))
-        return SlowerPlan(factor, plan) if plan.report.feasible else None
-
-    found = None
-    for number in range(CONFIRMATIONS):
-        found = planned(slow * LITTLE**number)
-        if found is not None:
+def _confirmed(problem: PathProblem, factor: float, seed: int, progress: Progress) -> SlowerPlan:
+    """The full plan at `factor`, or at the next greater one at which it keeps the limits."""
+    for _ in range(CONFIRMATIONS):
+        slower = SlowerPlan(
+            factor, solve(slowed(problem, factor), seed, _of_factor(progress, factor))
+        )
+        if slower.plan.report.feasible:
             break
-    best = found
-    while found is not None and found.factor > FINE_ENOUGH:
-        best, found = found, planned(found.factor / FINE_ENOUGH)
-    return found or best
+        factor *= LITTLE
+    return slower
+
+
+def _of_factor(progress: Progress, factor: float) -> Progress:
+    """What is reported while the full plan at a factor is made."""
+    return lambda share, _: progress(0.2 + 0.8 * share, f"{factor:.2f} times slower")

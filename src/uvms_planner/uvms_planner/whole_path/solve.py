@@ -16,11 +16,14 @@ ROUGH = Schedule(barriers=(1e-1, 1e-2, 1e-3, 1e-4))
 FULL = Schedule(barriers=(1e-3, 1e-4, 1e-5))
 THOROUGH = Schedule(barriers=(10.0, 1.0, 1e-1, 1e-2, 1e-3, 1e-4, 1e-5), steps=20, final_steps=40)
 """From far inside the limits, each barrier solved: where `FULL` gets stuck at a broken limit."""
+WITHIN = Schedule(barriers=(1e-1, 1e-2, 1e-3, 1e-4, 1e-5))
+"""From a plan that keeps the limits, or nearly."""
 REPAIR = Schedule(barriers=(1e-4, 1e-5))
 REPAIRS = 3  # times at most that limits are tightened where a plan exceeds them between samples
 SPARE = 2e-3  # share of a limit by which it is tightened more than it was exceeded
 HIGHER = 10.0  # price of a limit from one repair to the next
 HOPELESS = 0.1  # excess that no tightening mends
+FAR = 0.5  # excess on the coarse pieces that finer ones do not mend
 
 Progress = Callable[[float, str], None]
 
@@ -37,32 +40,51 @@ def solve(
     progress(0.0, "searching")
     held = posture_held(coarse)
     size = size_of(coarse, held)
-    begins = [
-        fine.taken_from(coarse.knots, rough.coefficients)
-        for rough in _rough(
-            coarse, held, seed, size, lambda share: progress(share / 2, "searching")
-        )
-    ]
-    full = FULL.scaled(size)
-    tick = ticker(lambda share: progress(0.5 + share / 2, "whole path"), full)
-    repairs = [REPAIR.scaled(size).at_price(HIGHER**k * full.price) for k in range(1, REPAIRS + 1)]
-    plan = _within_limits(fine, solve_on_knots(fine, begins[0], full, tick), repairs)
-    for begin in begins:
-        if not plan.report.feasible:
-            plan = min(plan, _thorough(fine, begin, size, progress), key=_worst_share)
+    rough = _rough(coarse, held, seed, size, lambda share: progress(share / 2, "searching"))
+    tick = ticker(lambda share: progress(0.5 + share / 2, "whole path"), FULL)
+    begin = fine.taken_from(coarse.knots, rough[0].coefficients)
+    plan = _on_fine(fine, begin, FULL.scaled(size), size, tick)
+    if not plan.report.feasible:
+        starts = [held, *(each.coefficients for each in rough)]
+        plan = _within_limits(plan, coarse, fine, starts, size, progress)
     progress(1.0, "whole path")
     return plan
 
 
+def _within_limits(
+    plan: PathPlan,
+    coarse: Discrete,
+    fine: Discrete,
+    starts: Sequence[Array],
+    size: float,
+    progress: Progress,
+) -> PathPlan:
+    """A plan that keeps the limits, where `plan` got stuck; the nearest where none is found.
+
+    Thoroughly on the coarse pieces, where that takes little; what those can do, the fine can.
+    """
+    for number, start in enumerate(starts):
+        progress(0.5 + number / 2 / len(starts), "within the limits")
+        found = solve_on_knots(coarse, start, THOROUGH.scaled(size))
+        rough = PathPlan(coarse.problem, coarse.knots, found.coefficients, found.iterations)
+        if rough.report.worst.share > 1 + FAR:
+            continue
+        begin = fine.taken_from(coarse.knots, found.coefficients)
+        other = _on_fine(fine, begin, WITHIN.scaled(size), size)
+        if other.report.feasible:
+            return other
+        same = PathPlan(fine.problem, fine.knots, begin, found.iterations)
+        plan = min(plan, other, same, key=_worst_share)
+        if plan.report.feasible:
+            return plan
+    if plan.report.worst.share > 1 + FAR:
+        return plan
+    other = _on_fine(fine, plan.coefficients, THOROUGH.scaled(size), size)
+    return min(plan, other, key=_worst_share)
+
+
 def _worst_share(plan: PathPlan) -> float:
     return plan.report.worst.share
-
-
-def _thorough(fine: Discrete, begin: Array, size: float, progress: Progress) -> PathPlan:
-    schedule = THOROUGH.scaled(size)
-    tick = ticker(lambda share: progress(0.5 + share / 2, "within the limits"), schedule)
-    repairs = [schedule] * REPAIRS
-    return _within_limits(fine, solve_on_knots(fine, begin, schedule, tick), repairs)
 
 
 def posture_held(discrete: Discrete) -> Array:
@@ -93,18 +115,26 @@ def _rough(
     return sorted([first, second], key=lambda solution: solution.cost)
 
 
-def _within_limits(discrete: Discrete, solution: Solution, repairs: Sequence[Schedule]) -> PathPlan:
-    """The plan of a solution, with the limits kept between the samples as well."""
+def _on_fine(
+    fine: Discrete,
+    begin: Array,
+    schedule: Schedule,
+    size: float,
+    tick: Callable[[], None] = lambda: None,
+) -> PathPlan:
+    """The plan near `begin` (K, d), with the limits kept between the samples as well."""
+    solution, discrete = solve_on_knots(fine, begin, schedule, tick), fine
     count = solution.iterations
-    for repair in repairs:
-        plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
+    for number in range(1, REPAIRS + 1):
+        plan = PathPlan(fine.problem, fine.knots, solution.coefficients, count)
         excess = plan.report.excess
         if plan.report.feasible or excess.max() > HOPELESS:
             return plan
         discrete = discrete.tightened(excess + SPARE)
+        repair = REPAIR.scaled(size).at_price(HIGHER**number * schedule.price)
         solution = solve_on_knots(discrete, solution.coefficients, repair)
         count += solution.iterations
-    return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
+    return PathPlan(fine.problem, fine.knots, solution.coefficients, count)
 
 
 def ticker(progress: Callable[[float], None], schedule: Schedule) -> Callable[[], None]:
