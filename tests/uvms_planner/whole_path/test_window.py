@@ -6,18 +6,18 @@ import numpy as np
 from whole_path_rig import CIRCLE, problem_of
 
 from uvms_planner.segment import tool_positions
-from uvms_planner.whole_path import PathWindow, Posture, solve
+from uvms_planner.whole_path import PathWindow, Posture, TimedPlan, solve
 
 STEP_S = 0.5
 
 
-def driven(window: PathWindow, start: Posture, until: float):
+def driven(window: PathWindow, start: Posture, until: float, whole: TimedPlan | None = None):
     """The plans of all windows, each begun where the one before is `STEP_S` later."""
     plans, last = [], None
     for begin in np.arange(0.0, until, STEP_S):
-        last = window.solve(begin, start, last)
+        last = window.solve(begin, start, last, whole, whole)
         plans.append(last)
-        start = Posture(*last.posture(np.array([begin + STEP_S]))[0])
+        start = last.state(begin + STEP_S)
     return plans
 
 
@@ -29,8 +29,8 @@ def total(plans) -> float:
 def test_windows_follow_the_whole_plan_at_its_cost():
     problem = problem_of(CIRCLE)
     whole = solve(problem)
-    window = PathWindow(problem.model, problem.tool, problem.limits, whole)
-    plans = driven(window, problem.start, problem.duration)
+    window = PathWindow(problem.model, problem.tool, problem.limits)
+    plans = driven(window, problem.start, problem.duration, TimedPlan(0.0, whole))
     assert total(plans) < 1.1 * whole.report.disturbance
     for before, after in pairwise(plans):
         seam = np.array([after.begin])

@@ -1,12 +1,18 @@
 """The best plan over a whole path that can be found: a search for the basin, then the optimum."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 
 import numpy as np
 
 from uvms_core.signals import Array
 from uvms_planner.whole_path.discrete import Discrete, discretise
-from uvms_planner.whole_path.newton import Schedule, Solution, solve_on_knots
+from uvms_planner.whole_path.newton import (
+    Schedule,
+    Solution,
+    finished,
+    newton_steps,
+    solve_on_knots,
+)
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
 from uvms_planner.whole_path.plan import PathPlan
@@ -45,13 +51,18 @@ def solve(
     ]
     full = FULL.scaled(size)
     tick = ticker(lambda share: progress(0.5 + share / 2, "whole path"), full)
-    repairs = [REPAIR.scaled(size).at_price(HIGHER**k * full.price) for k in range(1, REPAIRS + 1)]
+    repairs = repairs_of(full, size)
     plan = _within_limits(fine, solve_on_knots(fine, begins[0], full, tick), repairs)
     for begin in begins:
         if not plan.report.feasible:
             plan = min(plan, _thorough(fine, begin, size, progress), key=_worst_share)
     progress(1.0, "whole path")
     return plan
+
+
+def repairs_of(full: Schedule, size: float) -> list[Schedule]:
+    """What mends limits that a plan exceeds between its samples, dearer each time."""
+    return [REPAIR.scaled(size).at_price(HIGHER**k * full.price) for k in range(1, REPAIRS + 1)]
 
 
 def _worst_share(plan: PathPlan) -> float:
@@ -94,7 +105,13 @@ def _rough(
 
 
 def _within_limits(discrete: Discrete, solution: Solution, repairs: Sequence[Schedule]) -> PathPlan:
-    """The plan of a solution, with the limits kept between the samples as well."""
+    return finished(repair_steps(discrete, solution, repairs))
+
+
+def repair_steps(
+    discrete: Discrete, solution: Solution, repairs: Sequence[Schedule]
+) -> Generator[None, None, PathPlan]:
+    """The plan of a solution, with the limits kept between the samples as well; step by step."""
     count = solution.iterations
     for repair in repairs:
         plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
@@ -102,7 +119,7 @@ def _within_limits(discrete: Discrete, solution: Solution, repairs: Sequence[Sch
         if plan.report.feasible or excess.max() > HOPELESS:
             return plan
         discrete = discrete.tightened(excess + SPARE)
-        solution = solve_on_knots(discrete, solution.coefficients, repair)
+        solution = yield from newton_steps(discrete, solution.coefficients, repair)
         count += solution.iterations
     return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
 
