@@ -6,22 +6,25 @@ whoever follows a window to its end has a motion that goes on; without one it co
 """
 
 from dataclasses import dataclass, replace
-from functools import partial
 
 import numpy as np
+from scipy.interpolate import make_interp_spline
 
 from uvms_core.signals import Array
 from uvms_dynamics import Model
 from uvms_planner.limits import MotionLimits
+from uvms_planner.problem import VEHICLE
 from uvms_planner.segment import Samples
+from uvms_planner.whole_path.assembly import Bounds
 from uvms_planner.whole_path.discrete import Discrete, discretise
 from uvms_planner.whole_path.newton import Iteration
 from uvms_planner.whole_path.path_problem import CostWeights, PathProblem, Posture, ToolPath
 from uvms_planner.whole_path.plan import PathPlan, plan_values
 from uvms_planner.whole_path.plan_report import FORGIVEN, PlanReport, report_of
-from uvms_planner.whole_path.replan import fitted
-from uvms_planner.whole_path.sample import NO_SURROUNDINGS, Surroundings
+from uvms_planner.whole_path.sample import NO_SURROUNDINGS, WRENCHES, Surroundings
+from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.solve import HIGHER, SPARE, posture_held, size_of
+from uvms_planner.whole_path.spline import DEGREE, Basis, basis_at, greville, spline_values
 
 PIECES_S = (0.25,) * 2 + (0.5,) * 5 + (1.0,) * 5 + (2.0,) * 4  # 16 s
 SHORTEST_S = 2.0  # of a window that is cut off by the path's end
@@ -42,6 +45,7 @@ class TimedPlan:
     begin: float
     plan: PathPlan
     then: "TimedPlan | None" = None  # None: it rests
+    feasible: bool = False  # whether it is known to keep every limit
 
     @property
     def end(self) -> float:
@@ -85,7 +89,7 @@ class PathWindow:
         self._model, self._tool, self._limits, self._around = model, tool, limits, around
         self._weights = weights or CostWeights()
         self._breaks = np.concatenate([[0.0], np.cumsum(PIECES_S)])
-        self._templates: dict[tuple[float, bool], Discrete] = {}
+        self._templates: dict[tuple[float, bool], _Template] = {}
         self._size: float | None = None
 
     @property
@@ -108,17 +112,18 @@ class PathWindow:
         some more, from the motion `known`, or from the posture held. Nothing here is random.
         """
         length = self.duration if duration is None else duration
-        discrete = self._discrete(begin, start, then, length)
+        template = self._template(begin, start, then, length)
+        discrete = template.discrete
         if self._size is None:
             self._size = size_of(discrete, posture_held(discrete))
         known, guess = last or known, posture_held(discrete)
         if known is not None:
-            guess = fitted(discrete, partial(_led_over, known, then, begin, length))
+            guess = template.fit @ _led_over(known, then, begin, length, template.sites)
         barriers = FIRST_BARRIERS if last is None else (BARRIER,)
         plan, price = self._iterated(discrete, guess, barriers, PRICE), PRICE
         for _ in range(REPAIRS):
-            if plan.report.feasible:
-                break
+            if template.keeps_limits(plan):
+                return TimedPlan(begin, plan, then, True)
             discrete, price = discrete.tightened(plan.report.excess + SPARE), HIGHER * price
             plan = self._iterated(discrete, plan.coefficients, (BARRIER,) * REPAIR_STEPS, price)
         return TimedPlan(begin, plan, then)
@@ -132,9 +137,10 @@ class PathWindow:
             point.step(size * barrier)
         return PathPlan(discrete.problem, discrete.knots, point.coefficients, len(barriers))
 
-    def _discrete(
+    def _template(
         self, begin: float, start: Posture, then: TimedPlan | None, length: float
-    ) -> Discrete:
+    ) -> "_Template":
+        """The window on its knots, with what is the same for all windows of its length."""
         end = None if then is None else then.state(begin + length)
         problem = PathProblem(
             self._model, self._tool.after(begin), length, start, self._limits, self._weights,
@@ -143,21 +149,63 @@ class PathWindow:
         key = length, end is None
         if key not in self._templates:
             breaks = self._breaks * (length / self.duration)
-            self._templates = {key: discretise(problem, breaks, SAMPLES, TIGHT)}
+            self._templates = {key: _Template.of(discretise(problem, breaks, SAMPLES, TIGHT))}
         template = self._templates[key]
-        return replace(template, problem=problem, target=problem.target(template.times))
+        own = template.discrete
+        target = problem.target(own.times)
+        return replace(template, discrete=replace(own, problem=problem, target=target))
+
+
+@dataclass(frozen=True)
+class _Template:
+    """A window on its knots, and what else is worked out once for all windows of its length."""
+
+    discrete: Discrete
+    bounds: Bounds  # of sampled values, as they are
+    sites: Array  # (K,) s
+    fit: Array  # (K, K) from values at the sites to coefficients
+    instants: Array  # (k,) s, at which a window is examined
+    basis: Basis  # there
+
+    @staticmethod
+    def of(discrete: Discrete) -> "_Template":
+        sites = greville(discrete.knots)
+        instants = PathPlan(discrete.problem, discrete.knots, np.zeros((0, 0)), 0).instants()
+        fit = make_interp_spline(sites, np.eye(len(sites)), k=DEGREE, t=discrete.knots).c
+        basis = basis_at(discrete.knots, instants)
+        return _Template(discrete, sampled_bounds(discrete.problem), sites, fit, instants, basis)
+
+    def keeps_limits(self, plan: PathPlan) -> bool:
+        """Whether a window certainly keeps all limits; where not, its report knows more."""
+        problem, limits, bounds = self.discrete.problem, self.discrete.problem.limits, self.bounds
+        posture = spline_values(self.basis, plan.coefficients)
+        c = slice(VEHICLE - 1, None)
+        start = problem.start.value
+        low, high = np.minimum(limits.lower[c], start), np.maximum(limits.upper[c], start)
+        over = max(
+            float(np.max(posture[:, 0] - high)),
+            float(np.max(low - posture[:, 0])),
+            float(np.max(np.abs(posture[:, 1]) / limits.rate[c])) - 1,
+            float(np.max(np.abs(posture[:, 2]) / limits.acceleration[c])) - 1,
+        )
+        if over > FORGIVEN or problem.tool.oriented:
+            return False
+        target = problem.target(self.instants)
+        values = plan_values(problem.model, problem.around, posture, target)[:, WRENCHES:]
+        excess = np.maximum(values - bounds.upper, bounds.lower - values)
+        return bool((excess <= FORGIVEN * bounds.scale).all())
 
 
 def _led_over(
     known: TimedPlan, then: TimedPlan | None, begin: float, length: float, times: Array
 ) -> Array:
-    """Yaw and joints (k, 3, d) that go over evenly from one motion to another, values alone."""
-    values = known.posture(begin + times)
+    """Yaw and joints (k, d) that go over evenly from one motion to another."""
+    values = known.posture(begin + times)[:, 0]
     if then is None or then is known.then:
         return values
-    u = (times / length)[:, None, None]
+    u = (times / length)[:, None]
     share = u**3 * (10 - 15 * u + 6 * u**2)
-    return values + share * (then.posture(begin + times) - values)
+    return values + share * (then.posture(begin + times)[:, 0] - values)
 
 
 def acceptable(new: TimedPlan, in_hand: TimedPlan, since: float) -> bool:
@@ -165,7 +213,7 @@ def acceptable(new: TimedPlan, in_hand: TimedPlan, since: float) -> bool:
 
     After a thruster has failed, say, there may be no plan that keeps all of them.
     """
-    if new.plan.report.feasible:
+    if new.feasible or new.plan.report.feasible:
         return True
     times = new.plan.instants()
     times = times[new.begin + times >= since]
