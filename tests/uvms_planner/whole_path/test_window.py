@@ -3,7 +3,9 @@
 from itertools import pairwise
 
 import numpy as np
-from whole_path_rig import CIRCLE, problem_of
+import pytest
+from planner_rig import reference_vehicle
+from whole_path_rig import CIRCLE, bluerov2, problem_of
 
 from uvms_planner.segment import tool_positions
 from uvms_planner.whole_path import PathWindow, Posture, TimedPlan, solve
@@ -55,3 +57,15 @@ def test_without_a_whole_plan_limits_are_kept_and_it_is_better_than_a_frozen_arm
     worst = max(each.plan.report_at(times).worst.share for each in plans)
     assert worst <= 1.001
     assert total(plans) < 3.0  # 15 with the arm frozen
+
+
+@pytest.mark.parametrize("vehicle", [reference_vehicle, bluerov2])
+def test_the_first_window_keeps_every_limit(vehicle):
+    """From rest, far from the optimum, where the disturbance is greatest; sampled at 1 kHz."""
+    problem = problem_of(CIRCLE, vehicle())
+    window = PathWindow(problem.model, problem.tool, problem.limits, around=problem.around)
+    for begin in (0.0, 20.0):
+        first = window.solve(begin, problem.start)
+        times = np.linspace(0.0, window.duration, round(1e3 * window.duration) + 1)
+        worst = first.plan.report_at(times).worst
+        assert worst.share <= 1.001, worst
