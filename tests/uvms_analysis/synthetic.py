@@ -24,6 +24,7 @@ from uvms_core.signals import (
     JointStates,
     Odometry,
     PathGoal,
+    PlannedDisturbance,
     Reference,
     Stability,
     ThrusterCommand,
@@ -37,6 +38,8 @@ from uvms_dynamics.kernels.rotations import rpy_to_quat
 PERIOD = 0.05
 STEP = 0.5
 ARM = np.array([0.2, 0.1, 1.4, 0.0])
+RESTORING = np.array([0.0, 0.0, 3.0, 4.0, 0.0, 0.0])
+COUPLING = np.array([0.0, 4.0, 0.0, 0.0, 3.0, 0.0])
 
 
 @dataclass(frozen=True)
@@ -54,6 +57,7 @@ class Known:
     name_start: bool = True
     namespace: str = ""
     with_stability: bool = True
+    plans_disturbance: bool = True  # 2 N along x and 1 N m about z less than the true one
 
 
 def make_path(known: Known, start: np.ndarray) -> PathGoal:
@@ -121,7 +125,13 @@ class Synthetic:
             0.0 * joints,
             0.0 * joints,
             np.array([self.target(time + t) for t in times]),
+            self.planned_disturbance(len(times)) if self.known.plans_disturbance else None,
         )
+
+    @staticmethod
+    def planned_disturbance(count: int) -> PlannedDisturbance:
+        restoring = RESTORING - np.array([2.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+        return PlannedDisturbance(np.tile(restoring, (count, 1)), np.tile(COUPLING, (count, 1)))
 
     def joints(self, stamp: int, time: float) -> JointStates:
         roll = np.array([0.0, 0.0, 0.0, 0.5 * np.sin(0.2 * time)])
@@ -136,8 +146,7 @@ class Synthetic:
         log.write(topics.ODOMETRY, self.odometry(stamp, time, offset))
         for topic in (topics.JOINT_STATES, topics.TRUE_JOINT_STATES):
             log.write(topic, self.joints(stamp, time))
-        restoring = np.array([0.0, 0.0, 3.0, 4.0, 0.0, 0.0])
-        coupling = np.array([0.0, 4.0, 0.0, 0.0, 3.0, 0.0])
+        restoring, coupling = RESTORING, COUPLING
         budget = DisturbanceBudget(stamp, restoring, coupling, np.zeros(6))
         log.write(topics.TRUE_DISTURBANCE, budget)
         log.write(topics.DISTURBANCE_BUDGET, budget)

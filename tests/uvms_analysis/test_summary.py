@@ -48,6 +48,14 @@ def test_all_metrics_are_there(summary):
     assert json.loads(json.dumps(summary)) == summary
 
 
+def test_references_without_a_disturbance_are_read_and_it_is_said(tmp_path):
+    write_log(tmp_path / "run.mcap", Known(duration=3.0, plans_disturbance=False))
+    found = summarise(tmp_path / "run.mcap", wall_s=None)
+    assert found["planned_disturbance_error"] == {"force_rms_n": None, "moment_rms_nm": None}
+    assert "do not say what disturbance" in found["missing"]["planned_disturbance_error"]
+    assert found["vehicle_error_m"]["rms"] is not None
+
+
 def test_run_and_time(summary):
     assert (summary["scenario"], summary["seed"]) == ("synthetic", 7)
     assert (summary["sim_duration_s"], summary["wall_s"]) == (12.0, 4.0)
@@ -78,6 +86,7 @@ def test_attitude(summary):
 
 def test_forces_and_computing_time(summary):
     assert summary["self_disturbance"] == {"force_rms_n": 5.0, "moment_rms_nm": 5.0}
+    assert summary["planned_disturbance_error"] == {"force_rms_n": 2.0, "moment_rms_nm": 1.0}
     assert summary["thruster_saturated_fraction"] == pytest.approx(61 / 241)
     assert summary["planner_step_ms"]["p50"] == 13.0
     assert summary["planner_step_ms"]["p99"] == pytest.approx(24.76)

@@ -224,6 +224,22 @@ def test_times_of_a_reference_increase_from_zero(rng):
         from_message(topics.REFERENCE, msg)
 
 
+def test_a_reference_need_not_say_what_disturbance_is_planned(rng):
+    msg = message(topics.REFERENCE, rng)
+    msg.points[1].disturbance = []
+    with pytest.raises(SignalError) as fault:
+        from_message(topics.REFERENCE, msg)
+    assert str(fault.value) == (
+        "reference: points[1].disturbance has 0 values; other points have one, so it must have one"
+    )
+    for point in msg.points:
+        point.disturbance = []
+    assert from_message(topics.REFERENCE, msg).disturbance is None
+    for point in msg.points:  # as in a log from before this field
+        del point.disturbance
+    assert from_message(topics.REFERENCE, msg).disturbance is None
+
+
 def test_faults_inside_a_point_are_named(rng):
     msg = message(topics.REFERENCE, rng)
     msg.points[2].joint_velocity[1] = NAN

@@ -34,6 +34,7 @@ def reference(rng: np.random.Generator, count: int = 11) -> signals.Reference:
         rng.normal(size=(count, 6)),
         *joints,
         rng.normal(size=(count, 3)),
+        signals.PlannedDisturbance(rng.normal(size=(count, 6)), rng.normal(size=(count, 6))),
     )
 
 

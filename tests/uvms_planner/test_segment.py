@@ -5,6 +5,7 @@ from hypothesis import strategies as st
 from planner_rig import START, solver_of
 from scipy.spatial.transform import Rotation
 
+from uvms_dynamics import coupling_wrench, restoring_wrench
 from uvms_planner.segment import Knot, evaluate, hermite, quintic, reference
 
 numbers = st.lists(st.floats(-2.0, 2.0), min_size=6, max_size=6)
@@ -54,3 +55,26 @@ def test_a_reference_is_consistent_in_all_its_derivatives():
     assert np.allclose(
         np.gradient(signal.q_dot, step, axis=0)[1:-1], signal.q_ddot[1:-1], atol=1e-5
     )
+
+
+def test_a_reference_says_what_its_motion_does_to_the_vehicle():
+    """Its wrenches are those of its own samples, and to hold still takes its weight alone."""
+    model = solver_of().model
+    rng = np.random.default_rng(5)
+    end = START + 0.1 * rng.normal(size=8)
+    knots = [
+        Knot(0, START, 0.2 * rng.normal(size=8), 0.3 * rng.normal(size=8), START),
+        Knot(1, end, 0.2 * rng.normal(size=8), 0.3 * rng.normal(size=8), START),
+    ]
+    times = np.linspace(0.0, 0.5, 6)
+    signal = reference(model, 0, times, hermite(*knots, 0.5, times))
+    for k in range(len(times)):
+        own = signal.nu[k], signal.nu_dot[k], signal.q[k], signal.q_dot[k], signal.q_ddot[k]
+        restoring = restoring_wrench(model, signal.quaternion[k], signal.q[k])
+        np.testing.assert_allclose(signal.disturbance.restoring[k], restoring, atol=1e-9)
+        coupling = coupling_wrench(model, *own)
+        np.testing.assert_allclose(signal.disturbance.coupling[k], coupling, atol=1e-9)
+    still = Knot.at_rest(0, START)
+    held = reference(model, 0, times, hermite(still, still, 0.5, times)).disturbance
+    assert np.abs(held.coupling).max() < 1e-12
+    assert np.abs(held.restoring).max() > 0.1

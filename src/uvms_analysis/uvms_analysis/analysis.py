@@ -1,7 +1,9 @@
 """A run as its log shows it: truth against estimate, path and reference."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -153,14 +155,35 @@ class Analysis:
         if not self.references:
             return None
         names = ("position", "quaternion", "nu", "q", "q_dot", "end_effector")
-        columns = {n: np.concatenate([getattr(r, n) for r in self.references]) for n in names}
-        stamps = np.concatenate(
-            [r.stamp + np.rint(1e9 * r.times).astype(np.int64) for r in self.references]
-        )
-        # Segments share their end points: the later one is kept.
-        last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
-        kept = {name: column[last] for name, column in columns.items()}
-        return Series(stamps[last], kept, topics.REFERENCE.name)
+        return _at_own_times(self.references, self.references, names)
+
+    @cached_property
+    def planned_disturbance(self) -> Series:
+        """Restoring and coupling wrench that the references expect, at their own sample times.
+
+        Raises:
+            LogError: there are no references, or they do not say.
+        """
+        saying = [each for each in self.references if each.disturbance is not None]
+        if not saying:
+            raise LogError(
+                f"log {self.log.path}: its references do not say what disturbance was planned"
+            )
+        parts = [each.disturbance for each in saying]
+        return _at_own_times(saying, parts, ("restoring", "coupling"))
+
+    @cached_property
+    def planned_disturbance_error(self) -> tuple[Array, Array]:
+        """Time (k,) and true minus planned restoring plus coupling wrench (k, 6), body frame.
+
+        The first sample is left out, as no torque is applied yet.
+        """
+        plan, time = self.planned_disturbance, self.disturbance.time
+        index = np.flatnonzero((time >= plan.time[0]) & (time <= plan.time[-1]))[1:]
+        true = (self.disturbance.restoring + self.disturbance.coupling)[index]
+        planned = plan.restoring + plan.coupling
+        at = [np.interp(time[index], plan.time, planned[:, i]) for i in range(6)]
+        return time[index], true - np.column_stack(at)
 
     @property
     def path(self) -> PathGoal | None:
@@ -257,3 +280,17 @@ class Analysis:
         if not (finite := [value for value in values if np.isfinite(value)]):
             raise LogError(f"log {self.log.path}: its plant does not report them")
         return int(max(finite))
+
+
+def _at_own_times(
+    references: Sequence[Reference], parts: Sequence[Any], names: Sequence[str]
+) -> Series:
+    """Fields of the parts, one of each reference, as one series at the references' sample times.
+
+    Segments share their end points: the later one is kept.
+    """
+    columns = {name: np.concatenate([getattr(part, name) for part in parts]) for name in names}
+    stamps = np.concatenate([r.stamp + np.rint(1e9 * r.times).astype(np.int64) for r in references])
+    last = len(stamps) - 1 - np.unique(stamps[::-1], return_index=True)[1]
+    kept = {name: column[last] for name, column in columns.items()}
+    return Series(stamps[last], kept, topics.REFERENCE.name)

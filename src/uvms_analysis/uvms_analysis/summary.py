@@ -201,6 +201,11 @@ def _effort(run: Analysis, figures: Figures) -> dict[str, Any]:
     nothing = {"force_rms_n": None, "moment_rms_nm": None}
     return {
         "self_disturbance": figures.of("self_disturbance", lambda: self_disturbance(run), nothing),
+        "planned_disturbance_error": figures.of(
+            "planned_disturbance_error",
+            lambda: force_and_moment(run.planned_disturbance_error[1]),
+            nothing,
+        ),
         "planner_step_ms": figures.of(
             "planner_step_ms", lambda: percentiles(run.planner_step_ms), {"p50": None, "p99": None}
         ),
@@ -221,8 +226,12 @@ def self_disturbance(run: Analysis) -> Metrics:
     The first sample is left out: no joint torque is applied yet, and the arm starts to fall under
     its own weight, which neither planner nor controller can influence.
     """
-    wrench = (run.disturbance.restoring + run.disturbance.coupling)[1:]
+    return force_and_moment((run.disturbance.restoring + run.disturbance.coupling)[1:])
+
+
+def force_and_moment(wrenches: Array) -> Metrics:
+    """Root mean square of the lengths of the forces and of the moments of wrenches (k, 6)."""
     return {
-        "force_rms_n": rms_and_max(wrench[:, :3])["rms"],
-        "moment_rms_nm": rms_and_max(wrench[:, 3:])["rms"],
+        "force_rms_n": rms_and_max(wrenches[:, :3])["rms"],
+        "moment_rms_nm": rms_and_max(wrenches[:, 3:])["rms"],
     }

@@ -207,6 +207,17 @@ class DisturbanceBudget:
 
 
 @dataclass(frozen=True)
+class PlannedDisturbance:
+    """What a planned motion does to the vehicle, at the k times of its reference, body frame.
+
+    By the planner's model, payload included, for a level vehicle in still water.
+    """
+
+    restoring: Array6s  # weight and buoyancy of hull, links and payload, eq. (13)
+    coupling: Array6s  # reaction of the arm at its base without weight and buoyancy, (14)-(15)
+
+
+@dataclass(frozen=True)
 class Reference:
     """Where vehicle and joints are to be over the planner's next step, sampled at k times."""
 
@@ -220,6 +231,7 @@ class Reference:
     q_dot: ByJoints
     q_ddot: ByJoints
     end_effector: Array3s  # where that puts the end effector, map_ned
+    disturbance: PlannedDisturbance | None = None  # None: the planner does not say
 
     @property
     def end(self) -> int:

@@ -4,10 +4,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from uvms_core.signals import Array, Reference
-from uvms_dynamics import Model
+from uvms_core.signals import Array, PlannedDisturbance, Reference
+from uvms_dynamics import Model, coupling_wrench, restoring_wrench
 from uvms_dynamics.kernels.jit import kernel
-from uvms_planner.problem import VEHICLE
+from uvms_planner.problem import VEHICLE, yaw_quaternion
 from uvms_planner.projection import tool_pose
 
 
@@ -80,7 +80,7 @@ def hermite(start: Knot, end: Knot, duration: float, times: Array) -> Samples:
 
 
 def reference(model: Model, stamp: int, times: Array, samples: Samples) -> Reference:
-    """The samples as the reference signal: body rates, quaternions, where the tool is.
+    """The samples as the reference signal: body rates, quaternions, tool, self-disturbance.
 
     nu = R^T p_dot, r = psi_dot; nu_dot = R^T p_ddot - omega x nu, because nu is a body-frame
     vector of a turning body.
@@ -97,6 +97,8 @@ def reference(model: Model, stamp: int, times: Array, samples: Samples) -> Refer
     nu_dot[:, 0] = cos * a[:, 0] + sin * a[:, 1] + nu[:, 5] * nu[:, 1]
     nu_dot[:, 1] = -sin * a[:, 0] + cos * a[:, 1] - nu[:, 5] * nu[:, 0]
     nu_dot[:, 2], nu_dot[:, 5] = a[:, 2], a[:, 3]
+    q, q_dot, q_ddot = (part[:, VEHICLE:].copy() for part in (c, v, a))
+    wrenches = planned_wrenches(model, nu, nu_dot, q, q_dot, q_ddot)
     return Reference(
         stamp=stamp,
         times=times,
@@ -104,11 +106,26 @@ def reference(model: Model, stamp: int, times: Array, samples: Samples) -> Refer
         quaternion=quaternion,
         nu=nu,
         nu_dot=nu_dot,
-        q=c[:, VEHICLE:].copy(),
-        q_dot=v[:, VEHICLE:].copy(),
-        q_ddot=a[:, VEHICLE:].copy(),
+        q=q,
+        q_dot=q_dot,
+        q_ddot=q_ddot,
         end_effector=tool_positions(model, c),
+        disturbance=PlannedDisturbance(wrenches[:, 0].copy(), wrenches[:, 1].copy()),
     )
+
+
+@kernel
+def planned_wrenches(model, nu, nu_dot, q, q_dot, q_ddot):
+    """Restoring and coupling wrench (k, 2, 6) on the level vehicle in still water, body frame.
+
+    nu, nu_dot (k, 6); q, q_dot, q_ddot (k, n).
+    """
+    level = yaw_quaternion(0.0)
+    out = np.empty((nu.shape[0], 2, 6))
+    for i in range(nu.shape[0]):
+        out[i, 0] = restoring_wrench(model, level, q[i])
+        out[i, 1] = coupling_wrench(model, nu[i], nu_dot[i], q[i], q_dot[i], q_ddot[i])
+    return out
 
 
 @kernel

@@ -12,6 +12,7 @@ from uvms_analysis.errors import LogError, determine
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.report import force_figures, motion_figures, style
 from uvms_analysis.report.clearance_figure import clearance
+from uvms_analysis.report.disturbance_figure import planned_disturbance
 from uvms_analysis.report.page import Picture, write_page
 from uvms_analysis.report.scene import draw_scene, scene
 from uvms_analysis.report.stability_figure import stability
@@ -40,6 +41,11 @@ FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
         "Self-disturbance: restoring and coupling wrench on the vehicle, body frame. "
         "Grey: as observed.",
         force_figures.self_disturbance,
+    ),
+    "planned_disturbance": (
+        "Self-disturbance as planned and as it was: restoring plus coupling wrench on the vehicle, "
+        "body frame.",
+        planned_disturbance,
     ),
     "stability": (
         "Stability of the vehicle's loop by the controller's own account: Lyapunov function of "

@@ -8,7 +8,7 @@ import numpy as np
 from uvms_core.errors import SignalError
 from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
-from uvms_core.signals import Reference, to_nanoseconds
+from uvms_core.signals import Array, PlannedDisturbance, Reference, to_nanoseconds
 from uvms_core.topic import Topic
 
 
@@ -31,7 +31,15 @@ def _point_to(value: Reference, k: int) -> Plain:
         "joint_velocity": parts.floats(value.q_dot[k]),
         "joint_acceleration": parts.floats(value.q_ddot[k]),
         "end_effector": parts.vector(value.end_effector[k]),
+        "disturbance": _disturbance_to(value.disturbance, k),
     }
+
+
+def _disturbance_to(value: PlannedDisturbance | None, k: int) -> list[Plain]:
+    if value is None:
+        return []
+    both = {"restoring": value.restoring[k], "coupling": value.coupling[k]}
+    return [{name: parts.wrench(wrench) for name, wrench in both.items()}]
 
 
 def reference_from(topic: Topic, msg: Any, names: Sequence[str]) -> Reference:
@@ -62,6 +70,7 @@ def reference_from(topic: Topic, msg: Any, names: Sequence[str]) -> Reference:
         np.ascontiguousarray(q_dot[:, index]),
         np.ascontiguousarray(q_ddot[:, index]),
         tool,
+        _disturbance_from(topic, msg.points),
     )
 
 
@@ -78,3 +87,27 @@ def _point_from(topic: Topic, k: int, point: Any, count: int) -> tuple[Any, ...]
         fields.floats(topic, f"{at}.joint_acceleration", point.joint_acceleration, count),
         fields.xyz(topic, f"{at}.end_effector", point.end_effector),
     )
+
+
+def _disturbance_from(topic: Topic, points: Sequence[Any]) -> PlannedDisturbance | None:
+    """None where no point has one, as in logs from before this field."""
+    given = [list(getattr(point, "disturbance", ())) for point in points]
+    if not any(given):
+        return None
+    for k, found in enumerate(given):
+        if len(found) != 1:
+            raise SignalError(
+                f"{topic.name}: points[{k}].disturbance has {len(found)} values; other points have"
+                " one, so it must have one"
+            )
+    return PlannedDisturbance(
+        *(_wrenches(topic, name, given) for name in ("restoring", "coupling"))
+    )
+
+
+def _wrenches(topic: Topic, name: str, given: Sequence[Sequence[Any]]) -> Array:
+    at = "points[{}].disturbance[0]." + name
+    rows = [
+        fields.wrench(topic, at.format(k), getattr(found[0], name)) for k, found in enumerate(given)
+    ]
+    return np.array(rows)

@@ -7,7 +7,7 @@ from uvms_planner.whole_path.sample import Surroundings
 from uvms_planner.whole_path.slower import SlowerPlan, slow_down
 from uvms_planner.whole_path.solve import solve
 from uvms_planner.whole_path.surroundings import surroundings
-from uvms_planner.whole_path.window import PathWindow, WindowPlan
+from uvms_planner.whole_path.window import PathWindow, TimedPlan
 
 __all__ = [
     "CostWeights",
@@ -19,8 +19,8 @@ __all__ = [
     "Posture",
     "SlowerPlan",
     "Surroundings",
+    "TimedPlan",
     "ToolPath",
-    "WindowPlan",
     "slow_down",
     "solve",
     "surroundings",

@@ -1,6 +1,8 @@
 """Damped Gauss-Newton steps with a banded Cholesky factor, the barrier lowered on the way."""
 
+from collections.abc import Callable, Generator
 from dataclasses import dataclass, replace
+from typing import TypeVar, cast
 
 import numpy as np
 from scipy.linalg import LinAlgError, solveh_banded
@@ -17,6 +19,8 @@ LOOSER = 20.0  # tolerance while the barrier is still to be lowered
 TINY = 1e-12  # added to the diagonal
 TRIES = 8  # dampings, and for each
 LENGTHS = 12  # of a step
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True)
@@ -123,13 +127,30 @@ class Iteration:
 
 def solve_on_knots(discrete: Discrete, start: Array, schedule: Schedule, tick=lambda: None):
     """A local optimum from coefficients `start` (K, d)."""
+    return finished(newton_steps(discrete, start, schedule), tick)
+
+
+def finished(steps: Generator[None, None, T], tick: Callable[[], None] = lambda: None) -> T:
+    """What a search returns that is done step by step, with `tick` called after each."""
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return cast(T, end.value)
+        tick()
+
+
+def newton_steps(
+    discrete: Discrete, start: Array, schedule: Schedule
+) -> Generator[None, None, Solution]:
+    """The same, one step at a time; the optimum is what it returns."""
     point, count = Iteration(discrete, start, schedule.price), 0
     for number, mu in enumerate(schedule.barriers):
         final = number == len(schedule.barriers) - 1
         for _ in range(schedule.final_steps if final else schedule.steps):
             gained, promised = point.step(mu)
             count += 1
-            tick()
+            yield
             scale = 0.5 * discrete.disturbance(point.coefficients)
             tolerance = schedule.tolerance * (1 if final else LOOSER)
             if max(gained, promised) <= tolerance * scale:

@@ -13,7 +13,7 @@ from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan_report import PlanReport, report_of
 from uvms_planner.whole_path.sample import THRUST, WRENCHES, read_aim, sample_values, vehicle_motion
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds
-from uvms_planner.whole_path.spline import DEGREE, basis_at
+from uvms_planner.whole_path.spline import basis_at, spline_values
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
 
 INSTANTS = 12  # of each piece at which a plan is examined
@@ -42,9 +42,7 @@ class PathPlan:
         rests.
         """
         inside = np.clip(np.asarray(times, dtype=float), 0.0, self.duration)
-        basis = basis_at(self.knots, inside)
-        near = self.coefficients[basis.first[:, None] + np.arange(DEGREE + 1)]
-        return np.einsum("kra,kad->krd", basis.values, near)
+        return spline_values(basis_at(self.knots, inside), self.coefficients)
 
     def sample(self, times: Array) -> Samples:
         """The configuration c = (x, y, z, psi, q) with two derivatives at `times` (k,) s."""

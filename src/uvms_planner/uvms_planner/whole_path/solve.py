@@ -1,12 +1,18 @@
 """The best plan over a whole path that can be found: a search for the basin, then the optimum."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 
 import numpy as np
 
 from uvms_core.signals import Array
 from uvms_planner.whole_path.discrete import Discrete, discretise
-from uvms_planner.whole_path.newton import Schedule, Solution, solve_on_knots
+from uvms_planner.whole_path.newton import (
+    Schedule,
+    Solution,
+    finished,
+    newton_steps,
+    solve_on_knots,
+)
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.pieces import coarse_breaks, fine_breaks
 from uvms_planner.whole_path.plan import PathPlan
@@ -123,18 +129,29 @@ def _on_fine(
     tick: Callable[[], None] = lambda: None,
 ) -> PathPlan:
     """The plan near `begin` (K, d), with the limits kept between the samples as well."""
-    solution, discrete = solve_on_knots(fine, begin, schedule, tick), fine
+    solution = solve_on_knots(fine, begin, schedule, tick)
+    return finished(repair_steps(fine, solution, repairs_of(schedule, size)))
+
+
+def repairs_of(full: Schedule, size: float) -> list[Schedule]:
+    """What mends limits that a plan exceeds between its samples, dearer each time."""
+    return [REPAIR.scaled(size).at_price(HIGHER**k * full.price) for k in range(1, REPAIRS + 1)]
+
+
+def repair_steps(
+    discrete: Discrete, solution: Solution, repairs: Sequence[Schedule]
+) -> Generator[None, None, PathPlan]:
+    """The plan of a solution, with the limits kept between the samples as well; step by step."""
     count = solution.iterations
-    for number in range(1, REPAIRS + 1):
-        plan = PathPlan(fine.problem, fine.knots, solution.coefficients, count)
+    for repair in repairs:
+        plan = PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
         excess = plan.report.excess
         if plan.report.feasible or excess.max() > HOPELESS:
             return plan
         discrete = discrete.tightened(excess + SPARE)
-        repair = REPAIR.scaled(size).at_price(HIGHER**number * schedule.price)
-        solution = solve_on_knots(discrete, solution.coefficients, repair)
+        solution = yield from newton_steps(discrete, solution.coefficients, repair)
         count += solution.iterations
-    return PathPlan(fine.problem, fine.knots, solution.coefficients, count)
+    return PathPlan(discrete.problem, discrete.knots, solution.coefficients, count)
 
 
 def ticker(progress: Callable[[float], None], schedule: Schedule) -> Callable[[], None]:

@@ -5,11 +5,12 @@ degree 2, continuous with its rate, and as low a degree as possible keeps the bo
 hull of the coefficients tight.
 """
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import inner, kernel
 
 DEGREE = 4
 FIXED = 3  # coefficients that value, rate and acceleration at one end decide
@@ -30,45 +31,53 @@ def knots_at(breaks: Array) -> Array:
 def basis_at(knots: Array, times: Array) -> Basis:
     """The basis at `times` (k,) s, which must lie within the knots."""
     last = len(knots) - DEGREE - 2
+    times = np.asarray(times, dtype=np.float64)
     spans = np.clip(np.searchsorted(knots, times, side="right") - 1, DEGREE, last)
-    low = {DEGREE - 2: _cox_de_boor(knots, times, spans, DEGREE - 2)}
-    for degree in (DEGREE - 1, DEGREE):
-        low[degree] = _raised(knots, times, spans, low[degree - 1], degree)
-    rate = _differentiated(knots, spans, low[DEGREE - 1], DEGREE)
-    bend = _differentiated(knots, spans, low[DEGREE - 2], DEGREE - 1)
-    bend = _differentiated(knots, spans, bend, DEGREE)
-    values = np.stack([low[DEGREE], rate, bend], axis=1)
-    return Basis((spans - DEGREE).astype(np.int64), np.ascontiguousarray(values))
+    return Basis((spans - DEGREE).astype(np.int64), _functions(knots, times, spans))
 
 
-def _cox_de_boor(knots: Array, times: Array, spans: Any, degree: int) -> Array:
-    """The degree + 1 functions of a lower degree that are not zero, (k, degree + 1)."""
-    values = np.ones((len(times), 1))
-    for p in range(1, degree + 1):
-        values = _raised(knots, times, spans, values, p)
-    return values
+def spline_values(basis: Basis, coefficients: Array) -> Array:
+    """Splines of `coefficients` (K, d), and two derivatives, at the times of a basis: (k, 3, d)."""
+    near = coefficients[basis.first[:, None] + np.arange(DEGREE + 1)]
+    return np.einsum("kra,kad->krd", basis.values, near)
 
 
-def _raised(knots: Array, times: Array, spans: Any, lower: Array, degree: int) -> Array:
-    """Functions of `degree` from those of one degree less."""
-    out = np.zeros((len(times), degree + 1))
-    for j in range(degree):
-        left, right = knots[spans + j + 1 - degree], knots[spans + j + 1]
-        share = (times - left) / (right - left)
-        out[:, j] += (1 - share) * lower[:, j]
-        out[:, j + 1] += share * lower[:, j]
+@kernel
+def _functions(knots, times, spans):
+    """Functions and two derivatives (k, 3, DEGREE + 1) of those that are not zero."""
+    out = np.zeros((times.shape[0], 3, DEGREE + 1))
+    low, work = np.zeros((DEGREE + 1, DEGREE + 1)), np.zeros(DEGREE + 1)
+    for i in range(times.shape[0]):
+        low[0, 0] = 1.0
+        for degree in range(1, DEGREE + 1):
+            _raise(knots, times[i], spans[i], low[degree - 1], degree, low[degree])
+        out[i, 0] = low[DEGREE]
+        _differentiate(knots, spans[i], low[DEGREE - 1], DEGREE, out[i, 1])
+        _differentiate(knots, spans[i], low[DEGREE - 2], DEGREE - 1, work)
+        _differentiate(knots, spans[i], work, DEGREE, out[i, 2])
     return out
 
 
-def _differentiated(knots: Array, spans: Any, lower: Array, degree: int) -> Array:
-    """Derivatives of the functions of `degree` from those of one degree less (or theirs)."""
-    out = np.zeros((len(spans), degree + 1))
+@inner
+def _raise(knots, time, span, lower, degree, out):
+    """Fill `out` with the functions of `degree` from those of one degree less."""
+    out[:] = 0.0
     for j in range(degree):
-        left, right = knots[spans + j + 1 - degree], knots[spans + j + 1]
-        slope = degree * lower[:, j] / (right - left)
-        out[:, j] -= slope
-        out[:, j + 1] += slope
-    return out
+        left, right = knots[span + j + 1 - degree], knots[span + j + 1]
+        share = (time - left) / (right - left)
+        out[j] += (1 - share) * lower[j]
+        out[j + 1] += share * lower[j]
+
+
+@inner
+def _differentiate(knots, span, lower, degree, out):
+    """Fill `out` with derivatives of the functions of `degree` from those of one degree less."""
+    out[:] = 0.0
+    for j in range(degree):
+        left, right = knots[span + j + 1 - degree], knots[span + j + 1]
+        slope = degree * lower[j] / (right - left)
+        out[j] -= slope
+        out[j + 1] += slope
 
 
 def rate_factors(knots: Array, degree: int) -> Array:
