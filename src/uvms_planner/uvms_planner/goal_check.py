@@ -135,13 +135,8 @@ def check_reachable(
     """Raise GoalRejected, with the time, if vehicle and arm cannot follow the path.
 
     The path is followed with the projection alone, from `configuration` (m,), within the rate and
-    joint limits of every planner step. An axis of the tool that is to point somewhere is nothing
-    that a planner which goes step by step can keep.
+    joint limits of every planner step.
     """
-    if path.tool_axis is not None:
-        raise GoalRejected(
-            "path: this method follows no tool_axis; give whole orientations, or leave them free"
-        )
     count = max(1, int(np.ceil(path.duration / step)))
     times = np.minimum(np.arange(1, count + 1) * step, path.duration)
     targets = [path.sample(float(time)) for time in times]

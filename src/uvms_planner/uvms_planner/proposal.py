@@ -1,8 +1,11 @@
 """A goal that is checked, and planned beside the steps before it begins."""
 
 from collections.abc import Callable
+from contextlib import suppress
 
+from uvms_core import registry
 from uvms_core.end_effector_path import EndEffectorPath
+from uvms_core.errors import PluginError
 from uvms_core.signals import JointGoal, PathGoal
 from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_planner.errors import GoalRejected
@@ -19,6 +22,16 @@ from uvms_planner.solver import StepSolver
 from uvms_planner.whole_path import LimitShare, PathPlan, PathProblem, slow_down
 
 Progress = Callable[[float, str], None]
+
+
+def planners_of_paths() -> list[str]:
+    """Names of the installed methods that plan whole paths, and so follow an axis of the tool."""
+    found = []
+    for name in registry.names(registry.PLANNERS):
+        with suppress(PluginError):  # of somebody else's package: not what was asked for
+            if hasattr(registry.load(registry.PLANNERS, name), "plan_path"):
+                found.append(name)
+    return found
 
 
 def silent(share: float, text: str) -> None:
@@ -46,10 +59,11 @@ class Proposal:
         quaternion = matrix_to_quat(rotation)
         config = self._solver.config
         check_start(goal, position, quaternion, config)
-        if len(goal.tool_axis):
+        if len(goal.tool_axis) and not self._solver.plans_paths:
             raise GoalRejected(
-                "path: a tool_axis that points somewhere is not followed yet; give orientations, or"
-                " none"
+                f"path: the method {config.chosen} follows no tool_axis;"
+                f" {' and '.join(planners_of_paths())} can (planner.method), or give whole"
+                " orientations, or none"
             )
         return JoinedPath(EndEffectorPath(goal), position, quaternion, config.approach_s)
 

@@ -13,6 +13,7 @@ from uvms_planner.whole_path.plan_report import PlanReport, report_of
 from uvms_planner.whole_path.sample import THRUST, read_aim, sample_values, vehicle_motion
 from uvms_planner.whole_path.spline import DEGREE, basis_at
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
+from uvms_planner.whole_path.tool_turn import WANTED_ROWS
 
 INSTANTS = 12  # of each piece at which a plan is examined
 
@@ -78,9 +79,9 @@ def _vehicle_motions(model, motion, target):
     """Position, velocity and acceleration (k, 3, 3) of the vehicle."""
     out = np.empty((motion.shape[0], 3, 3))
     frames, tool = np.empty((motion.shape[2], FRAME_COLUMNS)), np.empty((3, 3))
-    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
+    aim, wanted = np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     for i in range(motion.shape[0]):
-        read_aim(target, i, aim, rotation)
+        read_aim(target, i, aim, wanted)
         vehicle_motion(model, motion[i], aim, frames, tool, out[i])
     return out
 
@@ -91,11 +92,11 @@ def plan_values(model, around, motion, target):
     thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
     size = THRUST + around.shares.shape[0] + around.margins.shape[0]
     out = np.zeros((motion.shape[0], size))
-    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
+    aim, wanted = np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     for i in range(motion.shape[0]):
-        read_aim(target, i, aim, rotation)
+        read_aim(target, i, aim, wanted)
         sample_values(
             model, around.shares, around.current, around.shapes, around.margins, motion[i], aim,
-            rotation, True, thrust, close, out[i],
+            wanted, True, thrust, close, out[i],
         )  # fmt: skip
     return out

@@ -7,7 +7,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import ATTITUDE, THRUST, TURN, WRENCHES
+from uvms_planner.whole_path.sample import ATTITUDE, MANIPULABILITY, TURN, WRENCHES
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds, value_names
 
 FORGIVEN = 1e-3  # share by which a limit may be exceeded; mm and mrad of a position
@@ -34,6 +34,7 @@ class PlanReport:
     disturbance: float  # J, integral of the squared restoring and coupling wrench
     force_rms: float  # N, of their sum
     moment_rms: float  # N m
+    manipulability: float  # the arm's least, as a share of its best; 0 in a singular posture
     limits: tuple[LimitShare, ...]  # the worst first
     excess: Array  # (v,) shares by which the sampled values exceed their limits, or negative
 
@@ -58,9 +59,15 @@ def report_of(problem: PathProblem, times: Array, posture: Array, values: Array)
         float(np.trapezoid(np.sum(wrenches**2, axis=1), times)),
         _rms(total[:, :3], times),
         _rms(total[:, 3:], times),
+        _least_share(values[:, MANIPULABILITY], problem.best_manipulability),
         tuple(sorted(limits, key=lambda limit: -limit.share)),
         np.array([excess for _, excess in sampled]),
     )
+
+
+def _least_share(values: Array, best: float) -> float:
+    """The least of the values over the best; 0 for an arm that has none anywhere."""
+    return float(values.min() / best) if best > 0.0 else 0.0
 
 
 def _rms(vectors: Array, times: Array) -> float:
@@ -77,7 +84,7 @@ def _of_samples(problem: PathProblem, values: Array, times: Array):
         if ATTITUDE <= WRENCHES + j < TURN:
             here, when = _since_level(here, times, bounds.upper[j])
         if j == turn and problem.tool.oriented:
-            angle = np.linalg.norm(values[:, TURN:THRUST], axis=1)
+            angle = np.linalg.norm(values[:, TURN:MANIPULABILITY], axis=1)
             yield _nearest(name, angle, when, -np.inf, problem.turn_tolerance, None), -np.inf
             continue
         limit = _nearest(name, here, when, bounds.lower[j], bounds.upper[j], scale)

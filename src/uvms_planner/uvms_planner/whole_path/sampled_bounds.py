@@ -10,7 +10,14 @@ from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 from uvms_planner.whole_path.assembly import Bounds
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, TURN, WRENCHES
+from uvms_planner.whole_path.sample import (
+    ATTITUDE,
+    MANIPULABILITY,
+    POSITION,
+    THRUST,
+    TURN,
+    WRENCHES,
+)
 
 BEYOND_PRICE = 1e-3
 """Of the free attitude where the start is beyond it: no joint is overtaxed to come back."""
@@ -54,7 +61,8 @@ def value_names(problem: PathProblem) -> list[str]:
         *motion,
         "free roll",
         "free pitch",
-        *(["turn of the tool"] * (THRUST - TURN)),
+        *(["turn of the tool"] * (MANIPULABILITY - TURN)),
+        "manipulability",
         *thrust,
         *clear,
     ]
