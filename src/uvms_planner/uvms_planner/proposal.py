@@ -17,9 +17,10 @@ from uvms_planner.on_path import OnPath
 from uvms_planner.planned_path import PlannedPath
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
+from uvms_planner.refusal import orientation_out_of_reach, singular_posture
 from uvms_planner.segment import Knot
 from uvms_planner.solver import StepSolver
-from uvms_planner.whole_path import LimitShare, PathPlan, PathProblem, slow_down
+from uvms_planner.whole_path import PathPlan, PathProblem, SlowerPlan, slow_down
 
 Progress = Callable[[float, str], None]
 
@@ -81,21 +82,18 @@ class Proposal:
         problem = self._solver.path_problem(self._path, self._knot)
         self.plan = self._solver.plan_path(problem, progress)
         if not self.plan.report.feasible:
-            self.plan = self._slower(problem, self.plan.report.worst, progress)
+            self.plan = self._slower(problem, self.plan, progress)
 
-    def _slower(self, problem: PathProblem, worst: LimitShare, progress: Progress) -> PathPlan:
+    def _slower(self, problem: PathProblem, plan: PathPlan, progress: Progress) -> PathPlan:
         """The plan of the path as slowly as it must be, where the goal allows that."""
-        slower = slow_down(problem, progress=progress)
-        if slower is None:
-            raise GoalRejected(f"path: it cannot be followed, however slowly; {worst}")
         if isinstance(self._goal, JointGoal):
             raise AssertionError("a motion of the joints is no path")
-        allowed = self._goal.time_scale_max
-        if slower.factor > allowed:
-            raise GoalRejected(
-                f"path too fast: {worst}; {slower.factor:.3g} times slower it can be followed, and"
-                f" the goal's time_scale_max is {allowed:g}"
-            )
+        beyond = orientation_out_of_reach(problem)
+        if beyond is not None:
+            raise GoalRejected(f"path: {beyond}")
+        slower = slow_down(problem, progress=progress)
+        if slower is None or slower.factor > self._goal.time_scale_max:
+            raise GoalRejected(_too_fast(plan, slower, self._goal.time_scale_max))
         self._path = self._joined(self._goal.slowed(slower.factor))
         plan = self._solver.plan_path(self._solver.path_problem(self._path, self._knot), progress)
         if not plan.report.feasible:
@@ -114,3 +112,16 @@ class Proposal:
         if self.plan is None:
             return PathFollower(self._solver, self._path, knot.stamp, step)
         return PlannedPath(self._solver, self._path, self.plan, knot.stamp, step)
+
+
+def _too_fast(plan: PathPlan, slower: SlowerPlan | None, allowed: float) -> str:
+    """Which limit stands against a path, and what can be done about it."""
+    worst = plan.report.worst
+    text = f"path: it cannot be followed, however slowly; {worst}"
+    if slower is not None:
+        text = (
+            f"path too fast: {worst}; {slower.factor:.3g} times slower it can be followed, and"
+            f" the goal's time_scale_max is {allowed:g}"
+        )
+    singular = singular_posture(plan, worst.time)
+    return text if singular is None else f"{text}; {singular}"

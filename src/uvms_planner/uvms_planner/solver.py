@@ -27,7 +27,14 @@ from uvms_planner.joined_path import JoinedPath
 from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScales
 from uvms_planner.problem import VEHICLE, StepProblem
 from uvms_planner.segment import Knot
-from uvms_planner.whole_path import PathPlan, PathProblem, Posture, Surroundings, ToolPath
+from uvms_planner.whole_path import (
+    CostWeights,
+    PathPlan,
+    PathProblem,
+    Posture,
+    Surroundings,
+    ToolPath,
+)
 from uvms_planner.whole_path.solve import Progress
 from uvms_planner.whole_path.surroundings import surroundings
 
@@ -95,13 +102,16 @@ class StepSolver:
 
     def path_problem(self, path: JoinedPath, start: Knot) -> PathProblem:
         """A whole path from a knot, with the limits, and with what stands around, as known now."""
+        singular = self.config.manipulability
         return PathProblem(
             self.model,
             ToolPath(path),
             path.duration,
             posture_of(start),
             self.limits_from(start.configuration),
+            weights=CostWeights(singular=singular.weight, manipulability=singular.enough),
             around=self.around_from(start.configuration),
+            turn_tolerance=np.deg2rad(self.config.projection.orientation_tolerance_deg),
         )
 
     def around_from(self, configuration: Array) -> Surroundings:

@@ -68,7 +68,7 @@ class CostWeights:
     stop_margin: float = np.deg2rad(8.0)  # rad
     turn: float = 1e6  # of one rad away from a prescribed orientation, or direction of an axis
     singular: float = 1e-3  # of a singular posture, falling to zero where manipulability is enough
-    manipulability: float = 0.25  # that is enough, as a share of the arm's best
+    manipulability: float = 0.15  # that is enough, as a share of the arm's best
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,7 @@ class PlanReport:
     force_rms: float  # N, of their sum
     moment_rms: float  # N m
     manipulability: float  # the arm's least, as a share of its best; 0 in a singular posture
+    mean_manipulability: float  # over the path, likewise
     limits: tuple[LimitShare, ...]  # the worst first
     excess: Array  # (v,) shares by which the sampled values exceed their limits, or negative
 
@@ -53,21 +54,23 @@ def report_of(problem: PathProblem, times: Array, posture: Array, values: Array)
     """The report of posture (k, 3, d) and values (k, v) of `sample` at `times` (k,) s."""
     wrenches = values[:, :WRENCHES]
     total = wrenches[:, :6] + wrenches[:, 6:]
+    manipulability = _share(values[:, MANIPULABILITY], problem.best_manipulability)
     sampled = list(_of_samples(problem, values, times))
     limits = [*(worst for worst, _ in sampled if worst), *_of_posture(problem, posture, times)]
     return PlanReport(
         float(np.trapezoid(np.sum(wrenches**2, axis=1), times)),
         _rms(total[:, :3], times),
         _rms(total[:, 3:], times),
-        _least_share(values[:, MANIPULABILITY], problem.best_manipulability),
+        float(manipulability.min()),
+        float(np.trapezoid(manipulability, times) / (times[-1] - times[0])),
         tuple(sorted(limits, key=lambda limit: -limit.share)),
         np.array([excess for _, excess in sampled]),
     )
 
 
-def _least_share(values: Array, best: float) -> float:
-    """The least of the values over the best; 0 for an arm that has none anywhere."""
-    return float(values.min() / best) if best > 0.0 else 0.0
+def _share(values: Array, best: float) -> Array:
+    """The values over the best; 0 for an arm that has none anywhere."""
+    return values / best if best > 0.0 else np.zeros_like(values)
 
 
 def _rms(vectors: Array, times: Array) -> float:
