@@ -1,11 +1,8 @@
 """A goal that is checked, and planned beside the steps before it begins."""
 
 from collections.abc import Callable
-from contextlib import suppress
 
-from uvms_core import registry
 from uvms_core.end_effector_path import EndEffectorPath
-from uvms_core.errors import PluginError
 from uvms_core.signals import JointGoal, PathGoal
 from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_planner.errors import GoalRejected
@@ -17,22 +14,12 @@ from uvms_planner.on_path import OnPath
 from uvms_planner.planned_path import PlannedPath
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
-from uvms_planner.refusal import orientation_out_of_reach, singular_posture
+from uvms_planner.refusal import reason_of, refuse_axis, refuse_out_of_reach
 from uvms_planner.segment import Knot
 from uvms_planner.solver import StepSolver
-from uvms_planner.whole_path import PathPlan, PathProblem, SlowerPlan, slow_down
+from uvms_planner.whole_path import PathPlan, PathProblem, slow_down
 
 Progress = Callable[[float, str], None]
-
-
-def planners_of_paths() -> list[str]:
-    """Names of the installed methods that plan whole paths, and so follow an axis of the tool."""
-    found = []
-    for name in registry.names(registry.PLANNERS):
-        with suppress(PluginError):  # of somebody else's package: not what was asked for
-            if hasattr(registry.load(registry.PLANNERS, name), "plan_path"):
-                found.append(name)
-    return found
 
 
 def silent(share: float, text: str) -> None:
@@ -61,11 +48,7 @@ class Proposal:
         config = self._solver.config
         check_start(goal, position, quaternion, config)
         if len(goal.tool_axis) and not self._solver.plans_paths:
-            raise GoalRejected(
-                f"path: the method {config.chosen} follows no tool_axis;"
-                f" {' and '.join(planners_of_paths())} can (planner.method), or give whole"
-                " orientations, or none"
-            )
+            refuse_axis(config.chosen)
         return JoinedPath(EndEffectorPath(goal), position, quaternion, config.approach_s)
 
     def work(self, progress: Progress) -> None:
@@ -86,14 +69,18 @@ class Proposal:
 
     def _slower(self, problem: PathProblem, plan: PathPlan, progress: Progress) -> PathPlan:
         """The plan of the path as slowly as it must be, where the goal allows that."""
+        refuse_out_of_reach(problem)
+        slower = slow_down(problem, progress=progress)
+        if slower is None:
+            raise GoalRejected(f"path: it cannot be followed, however slowly; {reason_of(plan)}")
         if isinstance(self._goal, JointGoal):
             raise AssertionError("a motion of the joints is no path")
-        beyond = orientation_out_of_reach(problem)
-        if beyond is not None:
-            raise GoalRejected(f"path: {beyond}")
-        slower = slow_down(problem, progress=progress)
-        if slower is None or slower.factor > self._goal.time_scale_max:
-            raise GoalRejected(_too_fast(plan, slower, self._goal.time_scale_max))
+        allowed = self._goal.time_scale_max
+        if slower.factor > allowed:
+            raise GoalRejected(
+                f"path too fast: {reason_of(plan)}; {slower.factor:.3g} times slower it can be"
+                f" followed, and the goal's time_scale_max is {allowed:g}"
+            )
         self._path = self._joined(self._goal.slowed(slower.factor))
         plan = self._solver.plan_path(self._solver.path_problem(self._path, self._knot), progress)
         if not plan.report.feasible:
@@ -112,16 +99,3 @@ class Proposal:
         if self.plan is None:
             return PathFollower(self._solver, self._path, knot.stamp, step)
         return PlannedPath(self._solver, self._path, self.plan, knot.stamp, step)
-
-
-def _too_fast(plan: PathPlan, slower: SlowerPlan | None, allowed: float) -> str:
-    """Which limit stands against a path, and what can be done about it."""
-    worst = plan.report.worst
-    text = f"path: it cannot be followed, however slowly; {worst}"
-    if slower is not None:
-        text = (
-            f"path too fast: {worst}; {slower.factor:.3g} times slower it can be followed, and"
-            f" the goal's time_scale_max is {allowed:g}"
-        )
-    singular = singular_posture(plan, worst.time)
-    return text if singular is None else f"{text}; {singular}"

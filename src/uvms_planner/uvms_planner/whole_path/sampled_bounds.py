@@ -51,20 +51,19 @@ def sampled_bounds(problem: PathProblem, tight: float = 1.0) -> Bounds:
     return Bounds(lower, upper, scale, floor, price)
 
 
-def value_names(problem: PathProblem) -> list[str]:
-    """What the values from POSITION on are, for people."""
-    motion = [f"{what}{axis} of the vehicle" for what in ("", "rate of ", "acceleration of ")
+def value_names(problem: PathProblem) -> list[tuple[str, str]]:
+    """What the values from POSITION on are, for people, and their units."""
+    motion = [(f"{what}{axis} of the vehicle", unit)
+              for what, unit in (("", "m"), ("rate of ", "m/s"), ("acceleration of ", "m/s^2"))
               for axis in AXES]  # fmt: skip
-    thrust = [f"thruster {k + 1}" for k in range(len(problem.around.shares))]
-    clear = [f"clearance {k + 1}" for k in range(len(problem.around.margins))]
     return [
         *motion,
-        "free roll",
-        "free pitch",
-        *(["turn of the tool"] * (MANIPULABILITY - TURN)),
-        "manipulability",
-        *thrust,
-        *clear,
+        ("free roll", "rad"),
+        ("free pitch", "rad"),
+        *([("turn of the tool", "rad")] * (MANIPULABILITY - TURN)),
+        ("manipulability", ""),
+        *((f"thruster {k + 1}", "") for k in range(len(problem.around.shares))),
+        *((f"clearance {k + 1}", "m") for k in range(len(problem.around.margins))),
     ]
 
 
