@@ -77,14 +77,12 @@ def _fastest(
         plan = solve(slowed(problem, factor), seed, lambda s, _: progress(share + 0.8 * s, text))
         return SlowerPlan(factor, plan) if plan.report.feasible else None
 
-    fast, found = 1.0, None
-    for _ in range(CONFIRMATIONS):
-        found = planned(slow)
+    found = None
+    for number in range(CONFIRMATIONS):
+        found = planned(slow * LITTLE**number)
         if found is not None:
             break
-        fast, slow = slow, LITTLE * slow
-    while found is not None and found.factor > FINE_ENOUGH * fast:
-        middle = float(np.sqrt(fast * found.factor))
-        faster = planned(middle)
-        fast, found = (middle, found) if faster is None else (fast, faster)
-    return found
+    best = found
+    while found is not None and found.factor > FINE_ENOUGH:
+        best, found = found, planned(found.factor / FINE_ENOUGH)
+    return found or best
