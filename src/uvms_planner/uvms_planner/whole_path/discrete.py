@@ -159,5 +159,5 @@ def _wishes(problem: PathProblem) -> Wishes:
     singular, enough = (weights.singular, enough) if enough > 0.0 else (0.0, 1.0)
     return Wishes(
         motion, lower + margin, upper - margin, stop,
-        weights.turn if problem.tool.oriented else 0.0, singular, enough,
+        problem.turn_weight, singular, enough,
     )  # fmt: skip

@@ -10,16 +10,17 @@ from functools import lru_cache
 
 import numpy as np
 from scipy.optimize import minimize
-from scipy.stats import qmc
 
 from uvms_core.signals import Array
 from uvms_dynamics import Model
 from uvms_dynamics.kernels.jit import inner, kernel
+from uvms_dynamics.kernels.layout import INERTIA, NET_MOMENT
+from uvms_planner.whole_path.posture_range import spread_postures
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS, ORIGIN, tool_motion
 
-SAMPLES_LOG2 = 10  # of the postures among which the best is looked for
+POSTURES_LOG2 = 10  # of the postures among which the best is looked for
 CLIMBS = 4  # from the best of them
-BEST_OF_ALL = 8  # arms and ranges that are remembered
+REMEMBERED = 8  # arms and ranges
 
 
 @inner
@@ -64,16 +65,22 @@ def best_manipulability(model: Model, lower: Array, upper: Array) -> float:
 
     From evenly spread postures uphill, always the same ones; good to a thousandth or so.
     """
-    bounds = np.ascontiguousarray(lower), np.ascontiguousarray(upper)
-    return _best(model.tobytes(), model.shape, bounds[0].tobytes(), bounds[1].tobytes())
+    table = _kinematics(model, len(lower))
+    return _best(table.tobytes(), table.shape, *(np.array(b).tobytes() for b in (lower, upper)))
 
 
-@lru_cache(maxsize=BEST_OF_ALL)
+def _kinematics(model: Model, n: int) -> Array:
+    """The model without masses and weights, which a payload changes."""
+    table = model.copy()
+    table[: n + 1, INERTIA : NET_MOMENT + 3] = 0.0
+    return table
+
+
+@lru_cache(maxsize=REMEMBERED)
 def _best(table: bytes, shape: tuple[int, ...], low: bytes, high: bytes) -> float:
     model = np.frombuffer(table).reshape(shape).copy()  # kernels take what may be written
     lower, upper = np.frombuffer(low), np.frombuffer(high)
-    spread = qmc.Sobol(len(lower), scramble=False).random_base2(SAMPLES_LOG2)
-    postures = lower + spread * (upper - lower)
+    postures = spread_postures(lower, upper, POSTURES_LOG2)
     found = manipulability(model, postures)
     bounds = list(zip(lower, upper, strict=True))
 

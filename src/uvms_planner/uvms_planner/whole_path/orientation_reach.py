@@ -9,13 +9,13 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from uvms_core.signals import Array
 from uvms_planner.constraints import free_attitude
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan import plan_values
+from uvms_planner.whole_path.posture_range import spread_postures
 from uvms_planner.whole_path.sample import (
     ATTITUDE,
     MANIPULABILITY,
@@ -135,8 +135,7 @@ def _starts(problem: PathProblem) -> Array:
     lower, upper = (bound.copy() for bound in _bounds(problem))
     start = problem.start.value
     lower[0], upper[0] = start[0] - np.pi, start[0] + np.pi
-    spread = qmc.Sobol(len(start), scramble=False).random_base2(STARTS_LOG2)
-    return np.vstack([start, lower + spread * (upper - lower)])
+    return np.vstack([start, spread_postures(lower, upper, STARTS_LOG2)])
 
 
 def _rows(target: Target, index: NDArray[np.int_]) -> Target:

@@ -13,7 +13,11 @@ from uvms_dynamics import Model
 from uvms_planner.limits import MotionLimits
 from uvms_planner.problem import VEHICLE
 from uvms_planner.whole_path.manipulability import best_manipulability
+from uvms_planner.whole_path.posture_range import typical_restoring
 from uvms_planner.whole_path.sample import NO_SURROUNDINGS, Surroundings, Target
+
+LEAST_TYPICAL = 40.0
+"""N^2 m^2; of a lighter arm the coupling counts for more than its weight."""
 
 
 class Path(Protocol):
@@ -66,7 +70,9 @@ class CostWeights:
     acceleration: float = 1e-5  # at its full acceleration
     stop: float = 1e-3  # of a joint at its stop, falling to zero at the margin
     stop_margin: float = np.deg2rad(8.0)  # rad
-    turn: float = 1e6  # of one rad away from a prescribed orientation, or direction of an axis
+    turn: float = 2.5  # of 1 rad away from a prescribed orientation, times the tolerance in rad and
+    # per typical disturbance squared: a plan gains about a twentieth of that by a rad, so that it
+    # stays within a fiftieth of the tolerance. More would make the Newton steps short for nothing
     singular: float = 1e-3  # of a singular posture, falling to zero where manipulability is enough
     manipulability: float = 0.15  # that is enough, as a share of the arm's best
 
@@ -93,9 +99,18 @@ class PathProblem:
     @property
     def best_manipulability(self) -> float:
         """The greatest that the arm has within its limits, m^3."""
-        joints = slice(VEHICLE, None)
-        limits = self.limits
-        return best_manipulability(self.model, limits.lower[joints], limits.upper[joints])
+        return best_manipulability(self.model, *self._joint_bounds())
+
+    @property
+    def turn_weight(self) -> float:
+        """Of one rad away from the prescribed orientation, squared; 0 where there is none."""
+        if not self.tool.oriented:
+            return 0.0
+        typical = max(typical_restoring(self.model, *self._joint_bounds()), LEAST_TYPICAL)
+        return self.weights.turn * typical / self.turn_tolerance
+
+    def _joint_bounds(self) -> tuple[Array, Array]:
+        return self.limits.lower[VEHICLE:], self.limits.upper[VEHICLE:]
 
     def target(self, times: Array) -> Target:
         """The tool's path at `times` (k,) s."""
