@@ -43,7 +43,7 @@ def refuse_out_of_reach(problem: PathProblem) -> None:
         f"path: from t = {gap.first:.4g} s on its {what} is out of reach: at t = {gap.time:.4g} s"
         " the nearest that the limits of joints, depth, roll and pitch allow is"
         f" {np.rad2deg(gap.angle):.4g} deg away, allowed {np.rad2deg(problem.turn_tolerance):g}"
-        f" deg, most of it {_about(problem, gap.turn)}; {what_can_be_followed(problem)}"
+        f" deg, most of it {_about(problem, gap.turn)}; {what_can_be_followed(problem, gap.turn)}"
     )
 
 
@@ -57,15 +57,19 @@ def reason_of(plan: PathPlan) -> str:
         return str(worst)
     return (
         f"{worst}, in a posture that is singular: yaw and joints hardly turn the tool"
-        f" {_about(problem, axis)}; {what_can_be_followed(problem)}"
+        f" {_about(problem, axis)}; {what_can_be_followed(problem, axis)}"
     )
 
 
-def what_can_be_followed(problem: PathProblem) -> str:
-    """With how much less asked of the orientation the path can be followed as fast as it is."""
+def what_can_be_followed(problem: PathProblem, hard: Array) -> str:
+    """With how much less asked of the orientation the path can be followed as fast as it is.
+
+    Of the tool's axes the one is preferred about which most of the turn `hard` (3,) is.
+    """
     found = []
     if _is_full(problem):
-        able = (axis for axis in np.eye(3) if _feasible(relaxed(problem, axis)))
+        axes = np.eye(3)[np.argsort(-np.abs(hard), kind="stable")]
+        able = (axis for axis in axes if _feasible(relaxed(problem, axis)))
         found = [f"orientation axis, tool_axis {axis.astype(int).tolist()}" for axis in able][:1]
     if _feasible(relaxed(problem)):
         found.append("orientation free")
