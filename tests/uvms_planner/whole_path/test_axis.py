@@ -66,7 +66,7 @@ def test_the_axis_points_where_it_did_and_the_rest_is_free(vehicle, path):
     assert turned > 5.0
     assert plan.report.disturbance < 0.95 * full.report.disturbance
     turn = next(limit for limit in plan.report.limits if limit.name == "turn of the tool")
-    assert turn.share < 0.2
+    assert turn.share < 0.05
 
 
 @VEHICLES

@@ -72,7 +72,7 @@ class CostWeights:
     stop_margin: float = np.deg2rad(8.0)  # rad
     turn: float = 2.5  # of 1 rad away from a prescribed orientation, times the tolerance in rad and
     # per typical disturbance squared: a plan gains about a twentieth of that by a rad, so that it
-    # stays within a fiftieth of the tolerance. More would make the Newton steps short for nothing
+    # stays within a twentieth of the tolerance. More would make the Newton steps short for nothing
     singular: float = 1e-3  # of a singular posture, falling to zero where manipulability is enough
     manipulability: float = 0.15  # that is enough, as a share of the arm's best
 
