@@ -174,7 +174,8 @@ class Synthetic:
 
     def plan(self, log: SignalWriter, number: int, stamp: int, time: float) -> None:
         log.write(topics.REFERENCE, self.reference(stamp, time), stamp)
-        values: dict[str, float] = {"step_ms": float(number // 10 + 1)}
+        share = 1.0 / (number // 10 + 2)
+        values: dict[str, float] = {"step_ms": float(number // 10 + 1), "manipulability": share}
         if self.known.name_start:
             values["elapsed_s"] = time - self.known.start
         log.write(topics.DIAGNOSTICS, Status(stamp, "motion_planner", values=values))

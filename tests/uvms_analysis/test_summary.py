@@ -43,6 +43,7 @@ def test_all_metrics_are_there(summary):
         "pitch_deg",
         "self_disturbance",
         "planner_step_ms",
+        "least_manipulability",
         "thruster_saturated_fraction",
     } <= set(summary)
     assert json.loads(json.dumps(summary)) == summary
@@ -89,6 +90,7 @@ def test_forces_and_computing_time(summary):
     assert summary["planned_disturbance_error"] == {"force_rms_n": 2.0, "moment_rms_nm": 1.0}
     assert summary["thruster_saturated_fraction"] == pytest.approx(61 / 241)
     assert summary["planner_step_ms"]["p50"] == 13.0
+    assert summary["least_manipulability"] == pytest.approx(1 / 26)
     assert summary["planner_step_ms"]["p99"] == pytest.approx(24.76)
 
 
@@ -153,6 +155,7 @@ def test_an_empty_log_has_a_summary_of_nothing(tmp_path):
     assert summary["end_effector_error_m"] == {"rms": None, "max": None, "end": None}
     assert summary["real_time_factor"] is None
     assert summary["planner_step_ms"] == {"p50": None, "p99": None}
+    assert summary["least_manipulability"] is None
     assert json.loads(json.dumps(summary)) == summary
 
 

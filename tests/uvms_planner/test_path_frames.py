@@ -231,8 +231,12 @@ def test_a_goal_that_points_nowhere_sensible_is_rejected(changes, words):
         run.planner.accept(replace(goal, positions=own, **changes))
 
 
-def test_an_axis_that_points_somewhere_is_refused():
-    run = drive()
+def test_a_method_that_plans_step_by_step_says_who_follows_an_axis():
+    run = drive(method="genetic_steps")
     spec = PathSpec.model_validate({**LINE, "orientation": "axis", "tool_axis": [0, 0, 1]})
-    with pytest.raises(GoalRejected, match="tool_axis that points somewhere is not followed"):
+    with pytest.raises(GoalRejected) as caught:
         run.planner.accept(spec.goal(*run.planner.end_effector))
+    assert str(caught.value) == (
+        "path: the method genetic_steps follows no tool_axis; planner.method genetic does, or give"
+        " whole orientations, or none"
+    )

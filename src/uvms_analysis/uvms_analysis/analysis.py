@@ -10,6 +10,7 @@ import numpy as np
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog, Series
 from uvms_core import topics
+from uvms_core.diagnostics import MANIPULABILITY
 from uvms_core.end_effector_path import EndEffectorPath
 from uvms_core.errors import UvmsError
 from uvms_core.signals import Array, PathGoal, Reference, to_seconds
@@ -272,6 +273,13 @@ class Analysis:
         """Computing time of the planner's steps."""
         values = [status.number("step_ms") for status in self.log.statuses(topics.MOTION_PLANNER)]
         return np.array([value for value in values if np.isfinite(value)])
+
+    @cached_property
+    def least_manipulability(self) -> float | None:
+        """The arm's least along the planned path, as a share of its best; None without a path."""
+        statuses = self.log.statuses(topics.MOTION_PLANNER)
+        values = [status.number(MANIPULABILITY) for status in statuses]
+        return min((value for value in values if np.isfinite(value)), default=None)
 
     @cached_property
     def lockstep_timeouts(self) -> int:

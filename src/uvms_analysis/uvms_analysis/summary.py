@@ -209,6 +209,9 @@ def _effort(run: Analysis, figures: Figures) -> dict[str, Any]:
         "planner_step_ms": figures.of(
             "planner_step_ms", lambda: percentiles(run.planner_step_ms), {"p50": None, "p99": None}
         ),
+        "least_manipulability": figures.of(
+            "least_manipulability", lambda: run.least_manipulability
+        ),
         "thruster_saturated_fraction": figures.of(
             "thruster_saturated_fraction",
             # Share of the control ticks in which some thruster is at its limit.

@@ -12,6 +12,9 @@ GOALS_ACCEPTED, PAUSES = "goals_accepted", "pauses"
 STEPS_BEYOND_LIMITS = "steps_beyond_limits"
 """Value of the planner: steps that it planned beyond its own limits."""
 
+MANIPULABILITY = "manipulability"
+"""Value of the planner: that of the arm at the end of a step, as a share of the arm's best."""
+
 
 class Trouble(NamedTuple):
     """Why what a part puts out cannot be relied on: how bad it is, and what it is in words.

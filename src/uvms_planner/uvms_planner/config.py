@@ -108,6 +108,24 @@ class ProjectionConfig(Config):
     )
 
 
+class ManipulabilityConfig(Config):
+    """What a posture near a singular one costs a plan over a whole path.
+
+    The measure is Yoshikawa's of the arm, as a share of the best that the arm has.
+    """
+
+    weight: float = Field(
+        1e-3, ge=0, le=1e3, description="N^2 (or N^2 m^2) for a singular posture; 0: none minds"
+    )
+    enough: float = Field(
+        0.15,
+        gt=0,
+        le=1.0,
+        description="share of the arm's best from which on a posture costs nothing; of an arm of"
+        " two links 0.15 is an elbow 9 deg from straight",
+    )
+
+
 class FitnessConfig(Config):
     """What makes a candidate good; combined and with all numbers zero it is eq. (18) as printed."""
 
@@ -247,6 +265,9 @@ class PlannerConfig(PluginConfig):
     )
     projection: ProjectionConfig = Field(
         ProjectionConfig(), description="precision, eq. (12), (17)"
+    )
+    manipulability: ManipulabilityConfig = Field(
+        ManipulabilityConfig(), description="postures near singular ones, method genetic"
     )
     fitness: FitnessConfig = Field(FitnessConfig(), description="fitness, eq. (18)")
     genetic: GeneticConfig = Field(GeneticConfig(), description="genetic algorithm, Fig. 3")

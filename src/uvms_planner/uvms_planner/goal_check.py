@@ -13,10 +13,11 @@ from uvms_planner.errors import GoalRejected
 from uvms_planner.joined_path import JoinedPath
 from uvms_planner.linear import copy_into
 from uvms_planner.problem import StepProblem
-from uvms_planner.projection import project, within_tolerance
+from uvms_planner.projection import project, rotation_error, tool_pose, within_tolerance
 from uvms_planner.solver import StepSolver
 
 SEARCH_ITERATIONS = 200
+STILL = 1e-9  # m/s or rad/s
 
 
 def check_path_goal(goal: PathGoal) -> None:
@@ -135,13 +136,8 @@ def check_reachable(
     """Raise GoalRejected, with the time, if vehicle and arm cannot follow the path.
 
     The path is followed with the projection alone, from `configuration` (m,), within the rate and
-    joint limits of every planner step. An axis of the tool that is to point somewhere is nothing
-    that a planner which goes step by step can keep.
+    joint limits of every planner step.
     """
-    if path.tool_axis is not None:
-        raise GoalRejected(
-            "path: this method follows no tool_axis; give whole orientations, or leave them free"
-        )
     count = max(1, int(np.ceil(path.duration / step)))
     times = np.minimum(np.arange(1, count + 1) * step, path.duration)
     targets = [path.sample(float(time)) for time in times]
@@ -160,9 +156,8 @@ def check_reachable(
     if index < 0:
         return
     _reject_unreachable(times[index:], targets[index:], problem, solver, frozen)
-    speed = float(np.linalg.norm(targets[index].velocity))
     raise GoalRejected(
-        f"path too fast: at t = {times[index]:g} s it moves at {speed:.4g} m/s; within the rate"
+        f"path too fast: at t = {times[index]:g} s {_motion_text(targets[index])}; within the rate"
         f" limits the end effector stays {_gap_text(problem, distance, angle)}"
     )
 
@@ -218,9 +213,33 @@ def _reject_unreachable(
             raise GoalRejected(
                 f"path: at t = {time:g} s the nearest reachable orientation is"
                 f" {np.rad2deg(angle):.4g} deg away, allowed"
-                f" {np.rad2deg(problem.orientation_tolerance):g} deg"
+                f" {np.rad2deg(problem.orientation_tolerance):g} deg,"
+                f" {_turn_text(solver, configuration + still, target)}; with the orientation free"
+                " nothing is asked of it"
             )
         configuration = configuration + still
+
+
+def _turn_text(solver: StepSolver, configuration: Array, target: PathSample) -> str:
+    """About which axis of the tool most of the turn is that is missing."""
+    if target.quaternion is None:
+        raise AssertionError("nothing is asked of the orientation")
+    desired = quat_to_matrix(target.quaternion)
+    missing = desired.T @ rotation_error(desired, tool_pose(solver.model, configuration)[1])
+    return f"most of it about the tool's {'xyz'[int(np.argmax(np.abs(missing)))]} axis"
+
+
+def _motion_text(target: PathSample) -> str:
+    """How fast the tool moves and turns there."""
+    words = []
+    speed = float(np.linalg.norm(target.velocity))
+    if speed > STILL:
+        words.append(f"moves at {speed:.4g} m/s")
+    if target.angular_velocity is not None:
+        turning = float(np.linalg.norm(target.angular_velocity))
+        if turning > STILL:
+            words.append(f"turns at {np.rad2deg(turning):.4g} deg/s")
+    return f"it {' and '.join(words) or 'rests'}"
 
 
 def _gap_text(problem: StepProblem, distance: float, angle: float) -> str:

@@ -17,11 +17,12 @@ from uvms_planner.planned_path import PlannedPath
 from uvms_planner.pose_motion import allowed_between, check_pose_goal, plan_pose, plan_straight
 from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
+from uvms_planner.refusal import reason_of, refuse_axis, refuse_out_of_reach
 from uvms_planner.segment import Knot
 from uvms_planner.solver import StepSolver
 from uvms_planner.straight_motion import Profile, StraightMotion
 from uvms_planner.timed_motion import TimedMotion
-from uvms_planner.whole_path import LimitShare, PathPlan, PathProblem, slow_down
+from uvms_planner.whole_path import PathPlan, PathProblem, slow_down
 
 Progress = Callable[[float, str], None]
 Motion = OnPath | TimedMotion
@@ -72,11 +73,8 @@ class Proposal:
             if self._present is None:
                 raise
             check_start(goal, *self._tool(self._present), config)
-        if len(goal.tool_axis):
-            raise GoalRejected(
-                "path: a tool_axis that points somewhere is not followed yet; give orientations, or"
-                " none"
-            )
+        if len(goal.tool_axis) and not self._solver.plans_paths:
+            refuse_axis(config.chosen)
         return JoinedPath(EndEffectorPath(goal), position, quaternion, config.approach_s)
 
     def _tool(self, knot: Knot) -> tuple[Array, Array]:
@@ -101,23 +99,24 @@ class Proposal:
         problem = self._solver.path_problem(self._path, self._knot)
         self.plan = self._solver.plan_path(problem, progress)
         if not self.plan.report.feasible:
-            self.plan = self._slower(problem, self.plan.report.worst, progress)
+            self.plan = self._slower(problem, self.plan, progress)
 
-    def _slower(self, problem: PathProblem, worst: LimitShare, progress: Progress) -> PathPlan:
+    def _slower(self, problem: PathProblem, plan: PathPlan, progress: Progress) -> PathPlan:
         """The plan of the path as slowly as it must be, where the goal allows that."""
+        refuse_out_of_reach(problem)
         slower = slow_down(problem, progress=progress)
         if not slower.plan.report.feasible:
             raise GoalRejected(
                 f"path: it cannot be followed, however slowly; in {slower.factor:.3g} times the"
-                f" time, {slower.plan.report.worst}"
+                f" time, {reason_of(slower.plan)}"
             )
         if not isinstance(self._goal, PathGoal):
             raise AssertionError("only a path is planned so")
         allowed = self._goal.time_scale_max
         if slower.factor > allowed:
             raise GoalRejected(
-                f"path too fast: {worst}; {slower.factor:.3g} times slower it can be followed, and"
-                f" the goal's time_scale_max is {allowed:g}"
+                f"path too fast: {reason_of(plan)}; {slower.factor:.3g} times slower it can be"
+                f" followed, and the goal's time_scale_max is {allowed:g}"
             )
         self._path = self._joined(self._goal.slowed(slower.factor))
         plan = self._solver.plan_path(self._solver.path_problem(self._path, self._knot), progress)

@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from uvms_core.diagnostics import STEPS_BEYOND_LIMITS
+from uvms_core.diagnostics import MANIPULABILITY, STEPS_BEYOND_LIMITS
 from uvms_core.signals import Array, Reference
 from uvms_planner.choice import Choice
 from uvms_planner.config import PlannerConfig
@@ -50,6 +50,7 @@ class StepDiagnostics:
     feasible: int  # of them within e and the attitude limits
     discarded: int  # of them not within e
     planned_error: float  # m
+    manipulability: float  # of the arm at the end of the step, as a share of its best
     limits_exceeded: tuple[LimitExceeded, ...]  # by the step, the most exceeded first
     steps_beyond_limits: int  # so far, of this planner
 
@@ -69,6 +70,7 @@ class StepDiagnostics:
             feasible=choice.feasible,
             discarded=choice.discarded,
             planned_error=step.planned_error,
+            manipulability=solver.manipulability(step.knot.configuration),
             limits_exceeded=choice.limits_exceeded,
             steps_beyond_limits=solver.steps_beyond_limits,
         )
@@ -88,6 +90,7 @@ class StepDiagnostics:
             "feasible": self.feasible,
             "discarded": self.discarded,
             "planned_error_m": self.planned_error,
+            MANIPULABILITY: self.manipulability,
             "limits_exceeded": "; ".join(map(str, self.limits_exceeded)) or "none",
             STEPS_BEYOND_LIMITS: self.steps_beyond_limits,
         }

@@ -28,7 +28,15 @@ from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScale
 from uvms_planner.motion_tilt import Tilt
 from uvms_planner.problem import VEHICLE, StepProblem
 from uvms_planner.segment import Knot
-from uvms_planner.whole_path import PathPlan, PathProblem, Posture, Surroundings, ToolPath
+from uvms_planner.whole_path import (
+    CostWeights,
+    PathPlan,
+    PathProblem,
+    Posture,
+    Surroundings,
+    ToolPath,
+)
+from uvms_planner.whole_path.manipulability import best_manipulability, manipulability
 from uvms_planner.whole_path.solve import Progress
 from uvms_planner.whole_path.surroundings import surroundings
 
@@ -58,6 +66,9 @@ class StepSolver:
         self._geometry = build_geometry(vehicle, config.obstacles)
         self._margins = clearance_margins(config.clearance, vehicle, self._geometry)
         self.around = self._surroundings()
+        limits = self.motion_limits
+        bounds = limits.lower[VEHICLE:], limits.upper[VEHICLE:]
+        self._best_manipulability = best_manipulability(self.model, *bounds)
         self.steps_beyond_limits = 0
         self._method: StepMethod = create(config, vehicle, seed)
         self._readiness = self._method.readiness(_readiness(self._scales, config))
@@ -105,13 +116,16 @@ class StepSolver:
 
     def path_problem(self, path: JoinedPath, start: Knot) -> PathProblem:
         """A whole path from a knot, with the limits, and with what stands around, as known now."""
+        singular = self.config.manipulability
         return PathProblem(
             self.model,
             ToolPath(path),
             path.duration,
             posture_of(start),
             self.limits_from(start.configuration),
+            weights=CostWeights(singular=singular.weight, manipulability=singular.enough),
             around=self.around_from(start.configuration),
+            turn_tolerance=np.deg2rad(self.config.projection.orientation_tolerance_deg),
         )
 
     def around_from(self, configuration: Array) -> Surroundings:
@@ -201,6 +215,13 @@ class StepSolver:
         """F_dis (6,) of eq. (16) at the end of the step, without looking ahead."""
         wrenches = self_disturbance(self.model, problem, increment, 0.0)
         return wrenches[:6] + wrenches[6:]
+
+    def manipulability(self, configuration: Array) -> float:
+        """That of the arm in a configuration (m,), as a share of its best; 0 at a singularity."""
+        if self._best_manipulability == 0.0:
+            return 0.0
+        own = manipulability(self.model, np.array(configuration[None, VEHICLE:]))
+        return float(own[0]) / self._best_manipulability
 
     def attitude_violation(self, configuration: Array) -> float:
         """How far in rad the free attitude lies beyond the limits in `configuration` (m,)."""

@@ -8,7 +8,7 @@ from whole_path_rig import CIRCLE, problem_of
 from uvms_dynamics import coupling_wrench, restoring_wrench
 from uvms_planner.constraints import free_attitude
 from uvms_planner.segment import Samples, reference
-from uvms_planner.whole_path import assembly
+from uvms_planner.whole_path import CostWeights, assembly
 from uvms_planner.whole_path.barrier import multiplier, penalty
 from uvms_planner.whole_path.discrete import discretise
 from uvms_planner.whole_path.newton import Iteration, moved
@@ -18,9 +18,10 @@ from uvms_planner.whole_path.sample import ATTITUDE
 BREAKS = np.linspace(0.0, 60.0, 13)
 
 
-def some_motion(oriented: bool = False, seed: int = 3):
+def some_motion(seed: int = 3, weights: CostWeights | None = None, **words):
     """A discrete problem and coefficients that go about within and beyond limits."""
-    problem = problem_of({**CIRCLE, "keep_orientation": True} if oriented else CIRCLE)
+    problem = problem_of({**CIRCLE, **words})
+    problem = replace(problem, weights=weights or problem.weights)
     discrete = discretise(problem, BREAKS)
     held = np.tile(problem.start.value, (len(discrete.grid.numbers), 1))
     noise = 0.1 * np.random.default_rng(seed).standard_normal(held.shape)
@@ -51,7 +52,20 @@ def test_gradient_is_that_of_the_cost():
 
 
 def test_gradient_with_a_prescribed_orientation():
-    assert_gradient_is_right(*some_motion(oriented=True))
+    assert_gradient_is_right(*some_motion(keep_orientation=True))
+
+
+def test_gradient_with_an_axis_that_points_somewhere():
+    words = {"orientation": "axis", "tool_axis": [0.6, 0.0, 0.8]}
+    discrete, coefficients = some_motion(**words)
+    assert discrete.wishes.turn > 0.0
+    assert_gradient_is_right(discrete, coefficients)
+
+
+def test_gradient_near_singular_postures():
+    discrete, coefficients = some_motion(weights=CostWeights(singular=100.0, manipulability=1.0))
+    assert discrete.wishes.singular == 100.0
+    assert_gradient_is_right(discrete, coefficients)
 
 
 def test_gradient_with_an_end_that_is_given():

@@ -8,7 +8,6 @@ from whole_path_rig import CIRCLE, LINE, bluerov2, problem_of, random_path
 
 from uvms_core.rng import generator
 from uvms_core.scene import Obstacle
-from uvms_planner.problem import VEHICLE
 from uvms_planner.segment import tool_positions
 from uvms_planner.whole_path import PathPlan, Posture, slow_down, solve
 from uvms_planner.whole_path.discrete import discretise
@@ -109,15 +108,6 @@ def test_a_start_beyond_the_free_attitude_comes_back():
     problem = problem_of(LINE, bluerov2())
     assert not frozen(problem).report.feasible
     assert solve(problem).report.feasible
-
-
-@pytest.mark.parametrize("vehicle", [None, bluerov2()], ids=["reference", "bluerov2"])
-def test_circle_after_circle_reaches_no_stop(vehicle):
-    path = {"circle": {"radius_m": 0.3, "plane": "XOZ", "turns": 5, "period_s": 60}}
-    problem = problem_of(path, vehicle)
-    joints = solve(problem).posture(np.linspace(0.0, 300.0, 3001))[:, 0, 1:]
-    lower, upper = problem.limits.lower[VEHICLE:], problem.limits.upper[VEHICLE:]
-    assert np.deg2rad(0.5) < min((joints - lower).min(), (upper - joints).min())
 
 
 def test_what_is_too_fast_says_which_limit_and_how_much_slower_it_goes():

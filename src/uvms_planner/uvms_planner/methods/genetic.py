@@ -24,6 +24,10 @@ class GeneticSteps(StepMethod):
     Fig. 3, step by step; what is added to it is in docs/paper-planner.md.
     """
 
+    ignores: ClassVar[Mapping[str, str]] = {
+        "manipulability": "methods that plan whole paths, such as genetic"
+    }
+
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:
         self._model = build_model(vehicle)
         self._settings = settings(config.genetic)

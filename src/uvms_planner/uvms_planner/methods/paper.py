@@ -32,6 +32,7 @@ class Paper(StepMethod):
     ignores: ClassVar[Mapping[str, str]] = {
         "fitness": "the other methods; this one has eq. (18) alone",
         "genetic": "the method genetic_steps; this one has paper",
+        "manipulability": "methods that plan whole paths, such as genetic",
     }
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:

@@ -21,6 +21,7 @@ class Sqp(StepMethod):
     ignores: ClassVar[Mapping[str, str]] = {
         "genetic": "the method genetic_steps; this one has sqp",
         "paper": "the method paper; this one has sqp",
+        "manipulability": "methods that plan whole paths, such as genetic",
     }
 
     def __init__(self, vehicle: Vehicle, config: PlannerConfig, seed: int) -> None:

@@ -13,6 +13,7 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import inner, kernel
 from uvms_planner.whole_path.barrier import linearised, penalty
 from uvms_planner.whole_path.sample import (
+    MANIPULABILITY,
     NEAR_M,
     THRUST,
     TURN,
@@ -22,6 +23,7 @@ from uvms_planner.whole_path.sample import (
     sample_values,
 )
 from uvms_planner.whole_path.spline import DEGREE
+from uvms_planner.whole_path.tool_turn import WANTED_ROWS
 
 FUNCTIONS = DEGREE + 1
 
@@ -58,13 +60,15 @@ class Rows(NamedTuple):
 
 
 class Wishes(NamedTuple):
-    """What costs a little: motion, nearness to stops, a turn away from the prescribed one."""
+    """What costs a little: motion, nearness to stops and to singular postures, a turn away."""
 
     motion: Array  # (3, d) weights of posture (unused), rates and accelerations squared
     low: Array  # (d,) posture below which the stop is near
     high: Array  # (d,)
     stop: Array  # (d,) weight of the distance beyond, squared
     turn: float  # weight of the turn, squared
+    singular: float  # weight of the lack of manipulability, squared, which is 1 at a singularity
+    enough: float  # manipulability that lacks nothing
 
 
 @inner
@@ -85,9 +89,15 @@ def _beyond(wishes, k, x):
 
 
 @inner
+def _lack(wishes, values):
+    """Share of the manipulability that is enough by which that of a sample falls short of it."""
+    return max(1.0 - values[MANIPULABILITY] / wishes.enough, 0.0)
+
+
+@inner
 def _wished(wishes, motion, values):
     """Half the squares of what only costs a little."""
-    total = 0.0
+    total = wishes.singular * _lack(wishes, values) ** 2
     for k in range(motion.shape[1]):
         total += wishes.motion[1, k] * motion[1, k] ** 2
         total += wishes.motion[2, k] * motion[2, k] ** 2
@@ -98,12 +108,12 @@ def _wished(wishes, motion, values):
 
 
 @inner
-def _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, values):
+def _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, wanted, values):
     """The share of one sample in the cost, without its weight."""
     thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
     sample_values(
         model, around.shares, around.current, around.shapes, around.margins,
-        motion, aim, rotation, True, thrust, close, values,
+        motion, aim, wanted, True, thrust, close, values,
     )  # fmt: skip
     total = _wished(wishes, motion, values)
     for k in range(WRENCHES):
@@ -156,12 +166,12 @@ def cost(model, around, grid, target, bounds, rows, wishes, mu, rho, coefficient
     """F(c) for coefficients (K, d)."""
     motion = np.empty((3, coefficients.shape[1]))
     values = np.zeros(WRENCHES + bounds.lower.shape[0])
-    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
+    aim, wanted = np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     total = 0.0
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
-        read_aim(target, i, aim, rotation)
-        one = _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, rotation, values)
+        read_aim(target, i, aim, wanted)
+        one = _one_sample(model, around, bounds, wishes, mu, rho, motion, aim, wanted, values)
         total += grid.weights[i] * one
     for r in range(rows.first.shape[0]):
         total += _row_cost(rows, r, coefficients, mu, rho)
@@ -173,14 +183,14 @@ def disturbance(model, around, grid, target, bounds, coefficients):
     """J: the integral of the squared wrenches."""
     motion = np.empty((3, coefficients.shape[1]))
     values = np.zeros(WRENCHES + bounds.lower.shape[0])
-    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
+    aim, wanted = np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     total = 0.0
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
-        read_aim(target, i, aim, rotation)
+        read_aim(target, i, aim, wanted)
         sample_values(
             model, around.shares, around.current, around.shapes, around.margins,
-            motion, aim, rotation, True, False, False, values,
+            motion, aim, wanted, True, False, False, values,
         )  # fmt: skip
         for k in range(WRENCHES):
             total += grid.weights[i] * values[k] ** 2
@@ -209,6 +219,10 @@ def _local(bounds, wishes, mu, rho, memory, i, weight, motion, values, jacobian,
         for k in range(3):
             w = weight * wishes.turn
             _add_square(jacobian, TURN + k, w, w * values[TURN + k], matrix, vector)
+    lack = _lack(wishes, values)
+    if lack > 0.0:
+        w, slope = weight * wishes.singular, -1.0 / wishes.enough
+        _add_square(jacobian, MANIPULABILITY, w * slope**2, w * slope * lack, matrix, vector)
     for j in range(bounds.lower.shape[0]):
         v, scale = values[WRENCHES + j], bounds.scale[j]
         slope, curvature = 0.0, 0.0
@@ -316,22 +330,22 @@ def linearise(
     motion, size = np.empty((3, d)), WRENCHES + bounds.lower.shape[0]
     values, moved, jacobian = np.zeros(size), np.zeros(size), np.zeros((size, 3 * d))
     matrix, vector = np.empty((3 * d, 3 * d)), np.empty(3 * d)
-    half, aim, rotation = np.empty(3 * d), np.empty((3, 3)), np.empty((3, 3))
+    half, aim, wanted = np.empty(3 * d), np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     gradient = np.zeros(band.shape[0])
     band[:] = 0.0
     for i in range(grid.first.shape[0]):
         _posture(grid, coefficients, i, motion)
-        read_aim(target, i, aim, rotation)
+        read_aim(target, i, aim, wanted)
         thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
         sample_values(
             model, around.shares, around.current, around.shapes, around.margins,
-            motion, aim, rotation, True, thrust, close, values,
+            motion, aim, wanted, True, thrust, close, values,
         )  # fmt: skip
         needed = _near_a_limit(around, bounds, values)
         near = _near_a_body(around, values)
         sample_jacobian(
             model, around.shares, around.current, around.shapes, around.margins,
-            motion, aim, rotation, needed, near, values, moved, jacobian,
+            motion, aim, wanted, needed, near, values, moved, jacobian,
         )  # fmt: skip
         _forget(around, needed, near, jacobian)
         _local(

@@ -155,6 +155,9 @@ def _wishes(problem: PathProblem) -> Wishes:
     motion = np.stack([np.zeros(d), weights.rate / rate**2, weights.acceleration / bend**2])
     margin = np.minimum(weights.stop_margin, (upper - lower) / 4)
     stop = np.where(np.isfinite(upper - lower), weights.stop / weights.stop_margin**2, 0.0)
+    enough = weights.manipulability * problem.best_manipulability
+    singular, enough = (weights.singular, enough) if enough > 0.0 else (0.0, 1.0)
     return Wishes(
-        motion, lower + margin, upper - margin, stop, weights.turn if problem.tool.oriented else 0.0
-    )
+        motion, lower + margin, upper - margin, stop,
+        problem.turn_weight, singular, enough,
+    )  # fmt: skip

@@ -7,10 +7,17 @@ import numpy as np
 from scipy.spatial.transform import Rotation
 
 from uvms_core.end_effector_path import PathSamples
+from uvms_core.pointing import Directions
 from uvms_core.signals import Array
 from uvms_dynamics import Model
 from uvms_planner.limits import MotionLimits
+from uvms_planner.problem import VEHICLE
+from uvms_planner.whole_path.manipulability import best_manipulability
+from uvms_planner.whole_path.posture_range import typical_restoring
 from uvms_planner.whole_path.sample import NO_SURROUNDINGS, Surroundings, Target
+
+LEAST_TYPICAL = 40.0
+"""N^2 m^2; of a lighter arm the coupling counts for more than its weight."""
 
 
 class Path(Protocol):
@@ -24,6 +31,15 @@ class Path(Protocol):
     @property
     def oriented(self) -> bool:
         """Whether the path prescribes the orientation, too."""
+        ...
+
+    @property
+    def tool_axis(self) -> Array | None:
+        """(3,) unit vector in the tool's axes that is to point along `directions`; or None."""
+        ...
+
+    def directions(self, times: Array) -> Directions:
+        """Where `tool_axis` is to point at `times` (k,) s."""
         ...
 
     def samples(self, times: Array) -> PathSamples:
@@ -54,7 +70,11 @@ class CostWeights:
     acceleration: float = 1e-5  # at its full acceleration
     stop: float = 1e-3  # of a joint at its stop, falling to zero at the margin
     stop_margin: float = np.deg2rad(8.0)  # rad
-    turn: float = 1e6  # of one rad away from a prescribed orientation
+    turn: float = 2.5  # of 1 rad away from a prescribed orientation, times the tolerance in rad and
+    # per typical disturbance squared: a plan gains about a twentieth of that by a rad, so that it
+    # stays within a twentieth of the tolerance. More would make the Newton steps short for nothing
+    singular: float = 1e-3  # of a singular posture, falling to zero where manipulability is enough
+    manipulability: float = 0.15  # that is enough, as a share of the arm's best
 
 
 @dataclass(frozen=True)
@@ -76,6 +96,22 @@ class PathProblem:
         """D = 1 + n, yaw and joints."""
         return len(self.start.value)
 
+    @property
+    def best_manipulability(self) -> float:
+        """The greatest that the arm has within its limits, m^3."""
+        return best_manipulability(self.model, *self._joint_bounds())
+
+    @property
+    def turn_weight(self) -> float:
+        """Of one rad away from the prescribed orientation, squared; 0 where there is none."""
+        if not self.tool.oriented:
+            return 0.0
+        typical = max(typical_restoring(self.model, *self._joint_bounds()), LEAST_TYPICAL)
+        return self.weights.turn * typical / self.turn_tolerance
+
+    def _joint_bounds(self) -> tuple[Array, Array]:
+        return self.limits.lower[VEHICLE:], self.limits.upper[VEHICLE:]
+
     def target(self, times: Array) -> Target:
         """The tool's path at `times` (k,) s."""
         return self.tool.target(np.clip(times, 0.0, self.duration))
@@ -84,15 +120,17 @@ class PathProblem:
 class ToolPath:
     """A path of the end effector from `begin` s on, possibly followed `factor` times slower.
 
-    `path` is an EndEffectorPath or a JoinedPath: anything with `duration`, `oriented` and
-    `samples(times)`.
+    `path` is an EndEffectorPath or a JoinedPath.
     """
 
     def __init__(self, path: Path, factor: float = 1.0, begin: float = 0.0):
         self.path = path
         self.factor = factor
         self.begin = begin
-        self.oriented = bool(path.oriented)
+        self.axis = np.zeros(3) if path.tool_axis is None else np.array(path.tool_axis)
+        """(3,) of the tool, in its own axes, that is to point somewhere; zero: none."""
+        self.oriented = bool(path.oriented) or path.tool_axis is not None
+        """Whether the path prescribes the tool's orientation, or an axis of it."""
 
     @property
     def duration(self) -> float:
@@ -108,10 +146,13 @@ class ToolPath:
         return ToolPath(self.path, self.factor * factor, self.begin * factor)
 
     def target(self, times: Array) -> Target:
-        """Position, velocity, acceleration and rotation at `times` (k,) s."""
+        """Position, velocity, acceleration and what is asked of the rotation at `times` (k,) s."""
         k = self.factor
-        s = self.path.samples((np.asarray(times, dtype=float) + self.begin) / k)
-        rotation = np.zeros((0, 3, 3))
+        own = (np.asarray(times, dtype=float) + self.begin) / k
+        s = self.path.samples(own)
+        rotation, direction = np.zeros((0, 3, 3)), np.zeros((0, 3))
+        if self.path.tool_axis is not None:
+            direction = self.path.directions(own).direction
         if s.quaternion is not None:
             rotation = Rotation.from_quat(s.quaternion).as_matrix()
         return Target(
@@ -119,4 +160,6 @@ class ToolPath:
             np.ascontiguousarray(s.velocity / k),
             np.ascontiguousarray(s.acceleration / k**2),
             np.ascontiguousarray(rotation),
+            self.axis,
+            np.ascontiguousarray(direction),
         )

@@ -15,6 +15,7 @@ from uvms_planner.whole_path.sample import THRUST, WRENCHES, read_aim, sample_va
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.spline import basis_at, spline_values
 from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS
+from uvms_planner.whole_path.tool_turn import WANTED_ROWS
 
 INSTANTS = 12  # of each piece at which a plan is examined
 CLOSELY = 8  # parts of what is between two instants, where a limit is near
@@ -96,9 +97,9 @@ def _vehicle_motions(model, motion, target):
     """Position, velocity and acceleration (k, 3, 3) of the vehicle."""
     out = np.empty((motion.shape[0], 3, 3))
     frames, tool = np.empty((motion.shape[2], FRAME_COLUMNS)), np.empty((3, 3))
-    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
+    aim, wanted = np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     for i in range(motion.shape[0]):
-        read_aim(target, i, aim, rotation)
+        read_aim(target, i, aim, wanted)
         vehicle_motion(model, motion[i], aim, frames, tool, out[i])
     return out
 
@@ -109,11 +110,11 @@ def plan_values(model, around, motion, target):
     thrust, close = around.shares.shape[0] > 0, around.margins.shape[0] > 0
     size = THRUST + around.shares.shape[0] + around.margins.shape[0]
     out = np.zeros((motion.shape[0], size))
-    aim, rotation = np.empty((3, 3)), np.empty((3, 3))
+    aim, wanted = np.empty((3, 3)), np.empty((WANTED_ROWS, 3))
     for i in range(motion.shape[0]):
-        read_aim(target, i, aim, rotation)
+        read_aim(target, i, aim, wanted)
         sample_values(
             model, around.shares, around.current, around.shapes, around.margins, motion[i], aim,
-            rotation, True, thrust, close, out[i],
+            wanted, True, thrust, close, out[i],
         )  # fmt: skip
     return out

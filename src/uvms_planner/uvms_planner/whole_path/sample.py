@@ -13,15 +13,17 @@ from uvms_core.signals import Array
 from uvms_dynamics import coupling_wrench, inverse_dynamics, restoring_wrench
 from uvms_dynamics.kernels.clearance import clearance_work, clearances_into
 from uvms_dynamics.kernels.jit import inner, shared
-from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rotation_vector
 from uvms_planner.problem import yaw_quaternion
-from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS, tool_axes, tool_motion
+from uvms_planner.whole_path.manipulability import manipulability_at
+from uvms_planner.whole_path.tool_motion import FRAME_COLUMNS, tool_motion
+from uvms_planner.whole_path.tool_turn import AXIS, DIRECTION, tool_turn
 
 WRENCHES = 12  # restoring and coupling wrench
 POSITION = WRENCHES  # of the vehicle, then its velocity and acceleration, world axes
 ATTITUDE = POSITION + 9  # roll and pitch that the vehicle takes up freely
-TURN = ATTITUDE + 2  # from the prescribed orientation of the tool to its own
-THRUST = TURN + 3  # share of each thruster's authority, then clearances
+TURN = ATTITUDE + 2  # from the prescribed orientation of the tool, or of an axis, to its own
+MANIPULABILITY = TURN + 3  # of the arm
+THRUST = MANIPULABILITY + 1  # share of each thruster's authority, then clearances
 STEP = 1e-6  # of a finite difference, rad, rad/s, rad/s^2
 
 
@@ -32,6 +34,8 @@ class Target(NamedTuple):
     velocity: Array  # (k, 3) m/s
     acceleration: Array  # (k, 3) m/s^2
     rotation: Array  # (k, 3, 3) tool to map_ned; (0, 3, 3) where it is free
+    axis: Array  # (3,) of the tool, in its own axes, that is to point somewhere; or zero
+    direction: Array  # (k, 3) where it is to point, map_ned; (0, 3) where it is free
 
 
 class Surroundings(NamedTuple):
@@ -50,18 +54,20 @@ NEAR_M = 0.15
 
 
 @inner
-def read_aim(target, i, aim, rotation):
-    """Fill `aim` (3, 3) and `rotation` (3, 3) with the target at instant i.
+def read_aim(target, i, aim, wanted):
+    """Fill `aim` (3, 3) and `wanted` (WANTED_ROWS, 3) with the target at instant i.
 
     numba counts the references of all arrays of a tuple that it hands on, so that what is called
     for every derivative takes arrays.
     """
-    oriented = target.rotation.shape[0] > 0
+    oriented, points = target.rotation.shape[0] > 0, target.direction.shape[0] > 0
     for k in range(3):
         aim[0, k], aim[1, k] = target.position[i, k], target.velocity[i, k]
         aim[2, k] = target.acceleration[i, k]
         for m in range(3):
-            rotation[k, m] = target.rotation[i, k, m] if oriented else 0.0
+            wanted[k, m] = target.rotation[i, k, m] if oriented else 0.0
+        wanted[AXIS, k] = target.axis[k] if points else 0.0
+        wanted[DIRECTION, k] = target.direction[i, k] if points else 0.0
 
 
 @inner
@@ -102,14 +108,13 @@ def _body_motion(motion, vehicle, nu, nu_dot):
 
 @shared
 def sample_values(
-    model, shares, current, shapes, margins, motion, aim, rotation, moved, thrust, close, out
+    model, shares, current, shapes, margins, motion, aim, wanted, moved, thrust, close, out
 ):
     """Fill `out` with all values of one instant; those of the posture alone only if `moved`.
 
-    motion (3, d): posture, rates, accelerations. `aim` and `rotation` of `read_aim`; no rotation
-    is prescribed where it is zero. `thrust`, `close`: whether the thrusters' shares and the
-    clearances count. The four arrays after `model` are
-    those of `Surroundings`.
+    motion (3, d): posture, rates, accelerations. `aim` and `wanted` of `read_aim`. `thrust`,
+    `close`: whether the thrusters' shares and the clearances count. The four arrays after `model`
+    are those of `Surroundings`.
     """
     n = motion.shape[1] - 1
     frames, tool = np.empty((n + 1, FRAME_COLUMNS)), np.empty((3, 3))
@@ -125,7 +130,7 @@ def sample_values(
         for k in range(3):
             out[POSITION + 3 * row + k] = vehicle[row, k]
     if moved:
-        _posture_values(model, motion, rotation, frames, out)
+        _posture_values(model, motion[0], wanted, frames, tool[0], out)
     if thrust:
         _thrust_shares(model, shares, current, motion, nu, nu_dot, out)
     if close and moved:
@@ -133,10 +138,9 @@ def sample_values(
 
 
 @shared
-def _posture_values(model, motion, rotation, frames, out):
-    """Restoring wrench, free attitude and the tool's turn, which no rate changes."""
-    n = motion.shape[1] - 1
-    q = motion[0, 1:]
+def _posture_values(model, posture, wanted, frames, tool, out):
+    """Restoring wrench, free attitude, the tool's turn and manipulability: no rate changes them."""
+    q = posture[1:]
     quaternion = np.zeros(4)
     quaternion[3] = 1.0
     level = restoring_wrench(model, quaternion, q)
@@ -146,18 +150,8 @@ def _posture_values(model, motion, rotation, frames, out):
         out[k] = level[k]
     x, y, z = -level[4], level[3], -rolled[3]
     out[ATTITUDE], out[ATTITUDE + 1] = np.arctan2(y, z), np.arctan2(-x, np.hypot(y, z))
-    for k in range(3):
-        out[TURN + k] = 0.0
-    if rotation[0, 0] != 0.0 or rotation[1, 0] != 0.0 or rotation[2, 0] != 0.0:
-        turned, gap = np.empty((3, 3)), np.zeros((3, 3))
-        tool_axes(model, frames, n, motion[0, 0], turned)
-        for row in range(3):
-            for column in range(3):
-                for k in range(3):
-                    gap[row, column] += turned[row, k] * rotation[column, k]
-        vector = quat_to_rotation_vector(matrix_to_quat(gap))
-        for k in range(3):
-            out[TURN + k] = vector[k]
+    tool_turn(model, frames, posture[0], wanted, out[TURN:MANIPULABILITY])
+    out[MANIPULABILITY] = manipulability_at(frames, tool)
 
 
 @shared
@@ -192,7 +186,7 @@ def _clearances(model, shapes, margins, motion, vehicle, out):
 
 @shared
 def sample_jacobian(
-    model, shares, current, shapes, margins, motion, aim, rotation, thrust, close, base, moved, out
+    model, shares, current, shapes, margins, motion, aim, wanted, thrust, close, base, moved, out
 ):
     """Fill `out` (values, 3 d) with the derivatives of all values by forward differences."""
     d, clear = motion.shape[1], THRUST + shares.shape[0]
@@ -201,7 +195,7 @@ def sample_jacobian(
             kept = motion[row, column]
             motion[row, column] = kept + STEP
             sample_values(
-                model, shares, current, shapes, margins, motion, aim, rotation, row == 0, thrust,
+                model, shares, current, shapes, margins, motion, aim, wanted, row == 0, thrust,
                 close, moved,
             )  # fmt: skip
             motion[row, column] = kept

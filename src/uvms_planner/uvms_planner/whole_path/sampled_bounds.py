@@ -10,7 +10,14 @@ from uvms_planner.problem import VEHICLE
 from uvms_planner.projection import tool_pose
 from uvms_planner.whole_path.assembly import Bounds
 from uvms_planner.whole_path.path_problem import PathProblem
-from uvms_planner.whole_path.sample import ATTITUDE, POSITION, THRUST, TURN, WRENCHES
+from uvms_planner.whole_path.sample import (
+    ATTITUDE,
+    MANIPULABILITY,
+    POSITION,
+    THRUST,
+    TURN,
+    WRENCHES,
+)
 
 BEYOND_PRICE = 1e-3
 """Of the free attitude where the start is beyond it: no joint is overtaxed to come back."""
@@ -44,19 +51,19 @@ def sampled_bounds(problem: PathProblem, tight: float = 1.0) -> Bounds:
     return Bounds(lower, upper, scale, floor, price)
 
 
-def value_names(problem: PathProblem) -> list[str]:
-    """What the values from POSITION on are, for people."""
-    motion = [f"{what}{axis} of the vehicle" for what in ("", "rate of ", "acceleration of ")
+def value_names(problem: PathProblem) -> list[tuple[str, str]]:
+    """What the values from POSITION on are, for people, and their units."""
+    motion = [(f"{what}{axis} of the vehicle", unit)
+              for what, unit in (("", "m"), ("rate of ", "m/s"), ("acceleration of ", "m/s^2"))
               for axis in AXES]  # fmt: skip
-    thrust = [f"thruster {k + 1}" for k in range(len(problem.around.shares))]
-    clear = [f"clearance {k + 1}" for k in range(len(problem.around.margins))]
     return [
         *motion,
-        "free roll",
-        "free pitch",
-        *(["turn of the tool"] * (THRUST - TURN)),
-        *thrust,
-        *clear,
+        ("free roll", "rad"),
+        ("free pitch", "rad"),
+        *([("turn of the tool", "rad")] * (MANIPULABILITY - TURN)),
+        ("manipulability", ""),
+        *((f"thruster {k + 1}", "") for k in range(len(problem.around.shares))),
+        *((f"clearance {k + 1}", "m") for k in range(len(problem.around.margins))),
     ]
 
 
