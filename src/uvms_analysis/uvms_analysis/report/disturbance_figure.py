@@ -26,7 +26,7 @@ def planned_disturbance(run: Analysis) -> Figure:
             rms = np.sqrt(np.mean(errors[:, axis] ** 2)) if len(errors) else 0.0
             axes.set_title(f"{names[column]}   true less planned: rms {rms:.2g} {unit}", fontsize=9)
             axes.set_ylabel(unit)
-    style.legend(grid[0, 0])
+    grid[0, 0].legend(loc="upper right", ncols=2, fontsize=7)
     for axes in grid[-1]:
         style.time_axis(axes, true.time)
     return figure
