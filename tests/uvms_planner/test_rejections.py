@@ -99,7 +99,7 @@ def test_a_whole_path_that_is_too_fast_says_which_limit_and_how_much_slower_it_c
         rejection(fast),
     )
     factor = float(match[1])
-    assert 1.5 < factor < 5.0  # 15/8 of 0.3 m/s where 0.31 are allowed, and what acceleration takes
+    assert 1.3 < factor < 5.0  # 15/8 of 0.3 m/s where 0.31 are allowed, less what the arm reaches
     run = drive()
     run.planner.accept(replace(fast, time_scale_max=1.05 * factor))
     assert run.until_finished().success
