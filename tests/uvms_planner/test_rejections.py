@@ -94,7 +94,7 @@ def test_malformed_paths_are_rejected_with_value_and_bound(goal, message):
 def test_a_whole_path_that_is_too_fast_says_which_limit_and_how_much_slower_it_can_be():
     fast = path((0.0, 10.0), ((0, 0, 0), (3.0, 0, 0)))
     match = re.fullmatch(
-        r"path too fast: .+: [-\d.]+ at t = [\d.]+ s, allowed [\d.]+; ([\d.]+) times slower it"
+        r"path too fast: .+: [-\d.]+ at t = [\d.]+ s, allowed [-\d.]+; ([\d.]+) times slower it"
         r" can be followed, and the goal's time_scale_max is 1",
         rejection(fast),
     )
