@@ -42,9 +42,7 @@ def _times(name: str, seconds: Array, median: float, p99: float) -> Iterator[Met
 
 def _windows(problem: PathProblem, whole: TimedPlan, most: int) -> Array:
     """Processor time of each step, the check of its limits included."""
-    window = PathWindow(
-        problem.model, problem.tool, problem.limits, problem.weights, problem.around
-    )
+    window = PathWindow(problem)
     last, in_hand, spent = None, whole, []
     for begin in STEP_S * np.arange(min(most, (problem.duration - window.duration) / STEP_S)):
         began = time.process_time()

@@ -31,7 +31,7 @@ def total(plans) -> float:
 def test_windows_follow_the_whole_plan_at_its_cost():
     problem = problem_of(CIRCLE)
     whole = solve(problem)
-    window = PathWindow(problem.model, problem.tool, problem.limits)
+    window = PathWindow(problem)
     plans = driven(window, problem.start, problem.duration, TimedPlan(0.0, whole))
     assert total(plans) < 1.1 * whole.report.disturbance
     for before, after in pairwise(plans):
@@ -41,7 +41,7 @@ def test_windows_follow_the_whole_plan_at_its_cost():
 
 def test_the_tool_is_on_its_path_in_every_window():
     problem = problem_of(CIRCLE)
-    window = PathWindow(problem.model, problem.tool, problem.limits)
+    window = PathWindow(problem)
     for each in driven(window, problem.start, 5.0):
         times = np.linspace(0.0, STEP_S, 11)
         tool = tool_positions(problem.model, each.plan.sample(times).configuration)
@@ -51,7 +51,7 @@ def test_the_tool_is_on_its_path_in_every_window():
 
 def test_without_a_whole_plan_limits_are_kept_and_it_is_better_than_a_frozen_arm():
     problem = problem_of(CIRCLE)
-    window = PathWindow(problem.model, problem.tool, problem.limits)
+    window = PathWindow(problem)
     plans = driven(window, problem.start, problem.duration)
     times = np.linspace(0.0, STEP_S, 501)
     worst = max(each.plan.report_at(times).worst.share for each in plans)
@@ -63,7 +63,7 @@ def test_without_a_whole_plan_limits_are_kept_and_it_is_better_than_a_frozen_arm
 def test_the_first_window_keeps_every_limit(vehicle):
     """From rest, far from the optimum, where the disturbance is greatest; sampled at 1 kHz."""
     problem = problem_of(CIRCLE, vehicle())
-    window = PathWindow(problem.model, problem.tool, problem.limits, around=problem.around)
+    window = PathWindow(problem)
     for begin in (0.0, 20.0):
         first = window.solve(begin, problem.start)
         times = np.linspace(0.0, window.duration, round(1e3 * window.duration) + 1)

@@ -28,9 +28,7 @@ class Change:
 
     def __init__(self, problem: PathProblem, begin: float, in_hand: TimedPlan) -> None:
         self._problem = problem
-        self._window = PathWindow(
-            problem.model, problem.tool, problem.limits, problem.weights, problem.around
-        )
+        self._window = PathWindow(problem)
         self._last: TimedPlan | None = None
         self._rest: Replanning | None = None
         self._from = begin

@@ -11,17 +11,15 @@ import numpy as np
 from scipy.interpolate import make_interp_spline
 
 from uvms_core.signals import Array
-from uvms_dynamics import Model
-from uvms_planner.limits import MotionLimits
 from uvms_planner.problem import VEHICLE
 from uvms_planner.segment import Samples
 from uvms_planner.whole_path.assembly import Bounds
 from uvms_planner.whole_path.discrete import Discrete, discretise
 from uvms_planner.whole_path.newton import Iteration
-from uvms_planner.whole_path.path_problem import CostWeights, PathProblem, Posture, ToolPath
+from uvms_planner.whole_path.path_problem import PathProblem, Posture
 from uvms_planner.whole_path.plan import PathPlan, plan_values
 from uvms_planner.whole_path.plan_report import FORGIVEN, PlanReport, report_of
-from uvms_planner.whole_path.sample import NO_SURROUNDINGS, WRENCHES, Surroundings
+from uvms_planner.whole_path.sample import WRENCHES
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.solve import HIGHER, SPARE, posture_held, size_of
 from uvms_planner.whole_path.spline import DEGREE, Basis, basis_at, greville, spline_values
@@ -78,16 +76,9 @@ class PathWindow:
     Without a plan of the whole path the motion comes to rest at the window's end.
     """
 
-    def __init__(
-        self,
-        model: Model,
-        tool: ToolPath,
-        limits: MotionLimits,
-        weights: CostWeights | None = None,
-        around: Surroundings = NO_SURROUNDINGS,
-    ):
-        self._model, self._tool, self._limits, self._around = model, tool, limits, around
-        self._weights = weights or CostWeights()
+    def __init__(self, problem: PathProblem):
+        """`problem` is that of the whole path."""
+        self._problem = problem
         self._breaks = np.concatenate([[0.0], np.cumsum(PIECES_S)])
         self._templates: dict[tuple[float, bool], _Template] = {}
         self._size: float | None = None
@@ -142,10 +133,8 @@ class PathWindow:
     ) -> "_Template":
         """The window on its knots, with what is the same for all windows of its length."""
         end = None if then is None else then.state(begin + length)
-        problem = PathProblem(
-            self._model, self._tool.after(begin), length, start, self._limits, self._weights,
-            self._around, end,
-        )  # fmt: skip
+        tool = self._problem.tool.after(begin)
+        problem = replace(self._problem, tool=tool, duration=length, start=start, end=end)
         key = length, end is None
         if key not in self._templates:
             breaks = self._breaks * (length / self.duration)
