@@ -16,7 +16,7 @@ LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 class Driver(Peer):
-    """An IMU at rest at 97 Hz, best effort, with stamps since 1970."""
+    """An IMU at rest at 97 Hz, best effort, with stamps since 1970, its quaternion rounded."""
 
     def __init__(self):
         super().__init__(heard=[topics.ODOMETRY])
@@ -28,8 +28,9 @@ class Driver(Peer):
         stamp = SINCE_1970 + round(self.samples * 1e9 / 97.0)
         gravity = np.array([0.0, 0.0, -9.80665])
         sample = ImuSample(stamp, LEVEL, np.zeros(3), gravity, NONE, NONE, NONE)
-        kind = message_class(topics.IMU)
-        self.publisher.publish(to_ros(kind, to_message(topics.IMU, sample, ())))
+        message = to_ros(message_class(topics.IMU), to_message(topics.IMU, sample, ()))
+        message.orientation.w = 1.002  # rounded, as some drivers do
+        self.publisher.publish(message)
         self.samples += 1
 
     @property

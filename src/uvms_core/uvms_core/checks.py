@@ -19,6 +19,8 @@ from uvms_core.signals import Array, OnlyIf, Shape, to_nanoseconds
 
 QUATERNION_TOLERANCE = 1e-3
 """A quaternion from outside may be off unit length by this much; a zero one is invalid."""
+ROUNDED = 0.02
+"""A driver's quaternion that is rounded to two decimals is off unit length by up to this."""
 MAX_AGE_S = 0.5
 """Oldest joint state or disturbance that control works with, s: a planner step."""
 ATTITUDE_DEG = 30.0

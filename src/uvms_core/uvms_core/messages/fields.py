@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from uvms_core.checks import is_unit
+from uvms_core.checks import ROUNDED, is_unit
 from uvms_core.errors import SignalError
 from uvms_core.signals import NANOSECONDS, Array, to_seconds
 from uvms_core.topic import Action, Topic
@@ -100,6 +100,15 @@ def quaternion(topic: Topic | Action, path: str, value: Any) -> Array:
         _refuse(topic.name, [f"{path}.{axis}" for axis in "xyzw"], (x, y, z, w))
         raise SignalError(f"{topic.name}: {path} has length {squared**0.5:g}; it must be 1")
     return np.array((x, y, z, w))
+
+
+def rounded_quaternion(topic: Topic, path: str, value: Any) -> Array:
+    """As `quaternion`, of a driver that rounds: one that is nearly of unit length is made so."""
+    found = np.array((value.x, value.y, value.z, value.w))
+    length = float(np.linalg.norm(found))
+    if not abs(length - 1.0) < ROUNDED:
+        return quaternion(topic, path, value)  # says what is wrong with it
+    return found if is_unit(length**2) else found / length
 
 
 def floats(topic: Topic | Action, path: str, values: Any, count: int) -> Array:

@@ -33,7 +33,7 @@ def from_message(topic: Topic, msg: Any, names: Sequence[str]) -> ImuSample:
 
     return ImuSample(
         fields.stamp_of(msg.header.stamp),
-        fields.quaternion(topic, "orientation", msg.orientation),
+        fields.rounded_quaternion(topic, "orientation", msg.orientation),
         fields.vector(topic, "angular_velocity", msg.angular_velocity),
         fields.vector(topic, "linear_acceleration", msg.linear_acceleration),
         covariance("orientation_covariance"),

@@ -3,14 +3,19 @@
 from collections.abc import Mapping
 from typing import Any
 
+from uvms_core import registry
 from uvms_core.errors import VehicleFileError
+
+SENSORS = "sensors"
+"""Section to which sensors may be added that the file does not have."""
 
 
 def override(data: Any, overrides: Mapping[str, Any]) -> Any:
     """Copy of `data` with the value at each dotted path replaced.
 
     An item of a list is named by its number or, where the items have names, by its name. Raises
-    VehicleFileError for a path that does not exist, with the choices at the place where it ends.
+    VehicleFileError for a path that does not exist, with the choices at the place where it ends. A
+    sensor that the file does not have can be added as a whole.
     """
     for path, value in overrides.items():
         data = _replaced(data, path.split("."), value, path, done="")
@@ -21,6 +26,8 @@ def _replaced(node: Any, parts: list[str], value: Any, path: str, done: str) -> 
     if not parts:
         return value
     keys = _keys(node)
+    if done == SENSORS:
+        keys |= {name: name for name in registry.names(registry.SENSORS)}
     key = keys.get(parts[0])
     if key is None:
         where = done or "the vehicle file"
@@ -30,7 +37,8 @@ def _replaced(node: Any, parts: list[str], value: Any, path: str, done: str) -> 
         raise VehicleFileError(f"override {path}: {where} has no {parts[0]!r}; {choices}")
     inner = f"{done}.{parts[0]}" if done else parts[0]
     copy = dict(node) if isinstance(node, Mapping) else list(node)
-    copy[key] = _replaced(node[key], parts[1:], value, path, inner)
+    within = node[key] if isinstance(node, list | tuple) or key in node else None
+    copy[key] = _replaced(within, parts[1:], value, path, inner)
     return copy
 
 

@@ -5,16 +5,13 @@ from operator import itemgetter
 from typing import Any, NamedTuple
 
 from uvms_core import registry
-from uvms_core.checks import is_unit
+from uvms_core.checks import ROUNDED, is_unit
 from uvms_core.errors import SignalError
 from uvms_core.sensors import sensor_types
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
-
-ROUNDED = 0.02
-"""A quaternion of two decimals is off unit length by up to this."""
 
 _ORDER = itemgetter(0, 1)
 
