@@ -97,6 +97,26 @@ def drive(vehicle: Vehicle | None = None, q_deg=START_DEG, seed: int = 1, **chan
     return Drive(MotionPlanner(vehicle or reference_vehicle(), config, seed), q_deg)
 
 
+def assert_smooth(run: Drive):
+    """Each reference goes on where the one before ended."""
+    for first, second in zip(run.references, run.references[1:], strict=False):
+        assert first.end == second.stamp
+        for name in ("position", "quaternion", "nu", "nu_dot", "q", "q_dot", "q_ddot"):
+            np.testing.assert_allclose(
+                getattr(first, name)[-1], getattr(second, name)[0], atol=1e-8, err_msg=name
+            )
+
+
+def assert_within_limits(run: Drive):
+    """Rates, within 0.1 %."""
+    limits = run.planner._solver.motion_limits
+    nu, q_dot = run.joined("nu"), run.joined("q_dot")
+    assert np.linalg.norm(nu[:, :2], axis=1).max() <= np.sqrt(2) * limits.rate[0] * 1.001
+    assert np.all(np.abs(nu[:, 2]) <= limits.rate[2] * 1.001)
+    assert np.all(np.abs(nu[:, 5]) <= limits.rate[3] * 1.001)
+    assert np.all(np.abs(q_dot) <= limits.rate[4:] * 1.001)
+
+
 def short_figure_9(seconds: float = 20.0, scale: float = 0.3) -> PathSpec:
     """The manipulation of Fig. 9, smaller and faster."""
     down, up, bulge = 0.35 * scale, 0.15 * scale, 0.1 * scale

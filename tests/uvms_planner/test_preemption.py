@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from planner_rig import CALM, drive, short_figure_9
+from planner_rig import CALM, assert_smooth, assert_within_limits, drive, short_figure_9
 
 from uvms_core.signals import DisturbanceBudget, JointGoal, PathGoal, Payload, PoseGoal
 from uvms_planner import GoalRejected
@@ -30,24 +30,6 @@ def folded(run) -> JointGoal:
 
 
 GOALS = {"path": rise, "pose": elsewhere, "joints": folded}
-
-
-def assert_smooth(run):
-    for first, second in zip(run.references, run.references[1:], strict=False):
-        assert first.end == second.stamp
-        for name in ("position", "quaternion", "nu", "nu_dot", "q", "q_dot", "q_ddot"):
-            np.testing.assert_allclose(
-                getattr(first, name)[-1], getattr(second, name)[0], atol=1e-8, err_msg=name
-            )
-
-
-def assert_within_limits(run):
-    limits = run.planner._solver.motion_limits
-    nu, q_dot = run.joined("nu"), run.joined("q_dot")
-    assert np.linalg.norm(nu[:, :2], axis=1).max() <= np.sqrt(2) * limits.rate[0] * 1.001
-    assert np.all(np.abs(nu[:, 2]) <= limits.rate[2] * 1.001)
-    assert np.all(np.abs(nu[:, 5]) <= limits.rate[3] * 1.001)
-    assert np.all(np.abs(q_dot) <= limits.rate[4:] * 1.001)
 
 
 @pytest.mark.parametrize("second", GOALS)

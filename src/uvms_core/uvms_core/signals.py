@@ -325,6 +325,14 @@ class PathGoal:
 
 
 @dataclass(frozen=True)
+class ToolTarget:
+    """Where the end effector is to go next, without a goal; another may come at any time."""
+
+    stamp: int  # ns
+    position: Array3  # m, map_ned
+
+
+@dataclass(frozen=True)
 class JointGoal:
     """A motion of the joints, rest to rest between its points, while the vehicle holds its pose."""
 

@@ -11,7 +11,7 @@ with further sensors has.
 from collections.abc import Iterable, Mapping
 
 from uvms_core import diagnostics, sensors, signals
-from uvms_core.messages import motion
+from uvms_core.messages import motion, target
 from uvms_core.topic import (
     BODY_FRAME,
     LATCHED,
@@ -35,6 +35,7 @@ __all__ = [
     "CONTROLLER",
     "DISTURBANCE_OBSERVER",
     "ENCODERS",
+    "END_EFFECTOR_TARGET",
     "LATCHED",
     "MOTION_PLANNER",
     "NAVIGATION",
@@ -137,6 +138,15 @@ SENSOR_GAPS = Topic(
     f"{SENSORS}gaps", "uvms_msgs/msg/SensorGaps", signals.SensorGaps, BODY_FRAME, is_occasional=True
 )
 """Of the plant: samples that are missing or late. Nobody needs it who has a real vehicle."""
+END_EFFECTOR_TARGET = Topic(
+    "end_effector_target",
+    "geometry_msgs/msg/PointStamped",
+    signals.ToolTarget,
+    WORLD_FRAME,
+    is_occasional=True,
+    conversion=Conversion(target.target_to, target.target_from),
+)
+"""Of whoever leads the tool by hand or by sight; to the planner, while no goal is active."""
 RECORDED = Topic("recorded", "rosgraph_msgs/msg/Clock", int)
 """Of the run, not of the loop: up to here everything is in the log. The plant waits for it."""
 ENCODERS = "encoders"

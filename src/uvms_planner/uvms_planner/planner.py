@@ -24,6 +24,7 @@ from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
 from uvms_planner.follow import PathFollower
+from uvms_planner.led_motion import LedMotion, led_to
 from uvms_planner.on_path import FollowedStep, OnPath
 from uvms_planner.planned_path import PlannedPath
 from uvms_planner.projection import tool_pose
@@ -66,7 +67,7 @@ class MotionPlanner:
         self._tick: int | None = None
         self._plan: _Plan | None = None
         self._goal: Motion | None = None
-        self._way: StraightMotion | None = None  # from rest to where the goal begins
+        self._way: StraightMotion | LedMotion | None = None  # to where the goal begins, or led to
         self._proposed = False
         self._finished: deque[GoalResult] = deque()  # which no step has told yet
         self._planned_error = 0.0
@@ -136,6 +137,20 @@ class MotionPlanner:
             self._end_goal(False, PREEMPTED)
         self._way, self._goal = way, motion
         self._planned_error = self._max_planned_error = 0.0
+
+    def lead(self, target: Array) -> None:
+        """Lead the tool to a target (3,) m in map_ned, from where the motion is planned to be next.
+
+        There it rests until another target or a goal comes. Raises GoalRejected before the first
+        step, while a goal is active, or where the target cannot be reached within the limits; the
+        motion then goes on as it was.
+        """
+        if self._plan is None or self._goal is not None:
+            why = "no odometry yet" if self._plan is None else "a goal is active"
+            raise GoalRejected(f"target: {why}")
+        knot, step = self._plan.knot, self._config.step_s
+        before = self._way if isinstance(self._way, LedMotion) else None
+        self._way = led_to(self._solver, knot, target, step, before)
 
     def _rest_in(self, lead: float) -> Knot:
         """Where the motion would be at rest if its goal ended in `lead` s."""

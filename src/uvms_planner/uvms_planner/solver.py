@@ -23,7 +23,6 @@ from uvms_planner.constraints import free_attitude
 from uvms_planner.exceeded import limits_exceeded
 from uvms_planner.fitness import self_disturbance
 from uvms_planner.interfaces import StepMethod
-from uvms_planner.joined_path import JoinedPath
 from uvms_planner.limits import JointLimits, MotionLimits, StepLimits, StepScales
 from uvms_planner.motion_tilt import Tilt
 from uvms_planner.problem import VEHICLE, StepProblem
@@ -37,6 +36,7 @@ from uvms_planner.whole_path import (
     ToolPath,
 )
 from uvms_planner.whole_path.manipulability import best_manipulability, manipulability
+from uvms_planner.whole_path.path_problem import Path
 from uvms_planner.whole_path.solve import Progress
 from uvms_planner.whole_path.surroundings import surroundings
 
@@ -114,7 +114,7 @@ class StepSolver:
         """Whether the method plans whole paths before they begin."""
         return hasattr(self._method, "plan_path")
 
-    def path_problem(self, path: JoinedPath, start: Knot) -> PathProblem:
+    def path_problem(self, path: Path, start: Knot) -> PathProblem:
         """A whole path from a knot, with the limits, and with what stands around, as known now."""
         singular = self.config.manipulability
         return PathProblem(

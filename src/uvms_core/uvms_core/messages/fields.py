@@ -14,7 +14,8 @@ import numpy as np
 from uvms_core.checks import ROUNDED, is_unit
 from uvms_core.errors import SignalError
 from uvms_core.signals import NANOSECONDS, Array, to_seconds
-from uvms_core.topic import Action, Topic
+from uvms_core.topic import WORLD_FRAME, Action, Topic
+from uvms_core.world_frames import MAP_FRAME, R_MAP_MAP_NED
 
 _LONGEST_ECHO = 200
 
@@ -38,6 +39,18 @@ def check_frame(topic: Topic, header: Any) -> None:
             f"{topic.name}: header.frame_id is {_short(header.frame_id)!r};"
             f" it must be {topic.frame!r}"
         )
+
+
+def to_map_ned(topic: Topic, header: Any) -> Array:
+    """The matrix (3, 3) from the axes of a header's frame, map_ned or map, to those of map_ned."""
+    if header.frame_id == WORLD_FRAME:
+        return np.eye(3)
+    if header.frame_id == MAP_FRAME:
+        return R_MAP_MAP_NED.T
+    raise SignalError(
+        f"{topic.name}: header.frame_id is {_short(header.frame_id)!r}; it must be"
+        f" {WORLD_FRAME!r} or {MAP_FRAME!r}"
+    )
 
 
 def check_child_frame(topic: Topic, frame: str) -> None:

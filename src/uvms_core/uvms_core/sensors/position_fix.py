@@ -7,7 +7,6 @@ from typing import Any
 import numpy as np
 from pydantic import Field, model_validator
 
-from uvms_core.errors import SignalError
 from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.sensors.type import SensorType
@@ -15,7 +14,6 @@ from uvms_core.signals import Array, Array3
 from uvms_core.start import Coordinate
 from uvms_core.topic import WORLD_FRAME, Topic
 from uvms_core.vehicle.further_sensors import Sensor
-from uvms_core.world_frames import MAP_FRAME, R_MAP_MAP_NED
 
 UNKNOWN = -1.0
 """Variance of the attitude, which such a sensor does not measure."""
@@ -68,18 +66,8 @@ def from_message(topic: Topic, msg: Any, names: Sequence[str]) -> FixSample:
     """From geometry_msgs/PoseWithCovarianceStamped in map_ned, or in map (east, north, up)."""
     position = fields.vector(topic, "pose.pose.position", msg.pose.pose.position)
     covariance = fields.covariance(topic, "pose.covariance", msg.pose.covariance, 6)[:3, :3]
-    frame = msg.header.frame_id
-    if frame == MAP_FRAME:
-        position, covariance = (
-            R_MAP_MAP_NED.T @ position,
-            R_MAP_MAP_NED.T @ covariance @ R_MAP_MAP_NED,
-        )
-    elif frame != WORLD_FRAME:
-        raise SignalError(
-            f"{topic.name}: header.frame_id is {frame[:80]!r}; it must be {WORLD_FRAME!r} or"
-            f" {MAP_FRAME!r}"
-        )
-    return FixSample(fields.stamp_of(msg.header.stamp), position, covariance.copy())
+    R = fields.to_map_ned(topic, msg.header)
+    return FixSample(fields.stamp_of(msg.header.stamp), R @ position, R @ covariance @ R.T)
 
 
 TYPE = SensorType(

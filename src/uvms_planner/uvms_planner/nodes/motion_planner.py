@@ -16,7 +16,7 @@ from uvms_core.messages import from_message
 from uvms_core.ros.convert import action_class
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
-from uvms_core.signals import NANOSECONDS, Goal, to_seconds
+from uvms_core.signals import NANOSECONDS, Goal, ToolTarget, to_seconds
 from uvms_core.tick_gate import Tick
 from uvms_core.timeline import Jump
 from uvms_core.topics import Action
@@ -65,6 +65,8 @@ class MotionPlannerNode(PartNode):
         self._stamp = 0
         self._accepted = 0
         self._servers = [self._serve(action) for action in topics.ACTIONS]
+        self._target: ToolTarget | None = None  # the newest, that no tick has taken
+        self.listen(topics.END_EFFECTOR_TARGET, self._take_target)
 
     def make_part(self) -> PlannerPart:
         """The planner with the method that the parameters name."""
@@ -72,6 +74,7 @@ class MotionPlannerNode(PartNode):
 
     def take_tick(self, tick: Tick) -> None:
         """Plan; every planner step is reported, and the goal's client hears of it."""
+        self._lead(tick.stamp)
         super().take_tick(tick)
         self._stamp, plan = tick.stamp, self.part.plan
         if plan is None:
@@ -82,6 +85,19 @@ class MotionPlannerNode(PartNode):
     def more_counts(self) -> dict[str, int]:
         """Goals that were accepted, whoever sent them."""
         return {**super().more_counts(), diagnostics.GOALS_ACCEPTED: self._accepted}
+
+    def _take_target(self, target: ToolTarget) -> None:
+        self._target = target
+
+    def _lead(self, stamp: int) -> None:
+        """Lead the tool to the newest target; where that cannot be, the motion goes on as it is."""
+        target, self._target = self._target, None
+        if target is None:
+            return
+        try:
+            self.part.planner.lead(target.position)
+        except UvmsError as fault:
+            self.complain(stamp, diagnostics.WARN, str(fault))
 
     def _answer_goal(self, plan: PlannerStep) -> None:
         """Feedback is of the newest goal; ends come in the order of the goals."""
