@@ -18,9 +18,8 @@ import pytest
 from uvms_analysis.log.read import RunLog
 from uvms_core.topics import Topic
 
-
 ENOUGH = 20
-"""Domains of one session of tests: several sessions share a machine, and each goes round its own."""
+"""Domains of one session of tests: several share a machine, and each goes round its own."""
 
 
 def _domains() -> Iterator[int]:
