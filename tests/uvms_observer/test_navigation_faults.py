@@ -109,7 +109,7 @@ FAULTS = {
     "gyro steps by 1 deg/s": imu(rate(0, 0, 1.0)),
     "gyro steps by 3 deg/s in roll": imu(rate(3.0, 0, 0)),
     "accelerometer steps by 5 cm/s2": imu(force(0.05, 0, 0)),
-    "accelerometer steps by 2 m/s2": imu(force(0, 2.0, 0)),
+    "accelerometer steps by 0.3 m/s2": imu(force(0, 0.3, 0)),
     "accelerometer spikes by 5 m/s2": imu(force(5.0, 0, 0), ONE),
     "accelerometer spikes by 1000 m/s2": imu(force(1000.0, 0, 0), ONE),
     "imu is silent for 1 s": imu(lambda sample: None, 1.0),

@@ -81,12 +81,12 @@ class Followed:
         parts = [getattr(step, name)[:-1] for step in self.steps]
         return np.concatenate([*parts, getattr(self.steps[-1], name)[-1:]])
 
-    def since_the_change(self) -> PlanReport:
-        """What is planned from there on costs, and what it takes of every limit, at 1 kHz."""
-        first = round(1e3 * self.changed)
+    def since_the_change(self, after: float = 0.0) -> PlanReport:
+        """What is planned from `after` s later on costs, and takes of every limit, at 1 kHz."""
+        first = round(1e3 * (self.changed + after))
         names = ("configuration", "rate", "acceleration")
         posture = np.stack([self.joined(name)[first:, VEHICLE - 1 :] for name in names], axis=1)
-        times = 1e-3 * np.arange(len(posture))
+        times = after + 1e-3 * np.arange(len(posture))
         target = self.rest.target(times)
         values = plan_values(self.rest.model, self.rest.around, posture, target)
         return report_of(self.rest, times, posture, values)

@@ -36,7 +36,7 @@ from uvms_planner.solver import StepSolver
 from uvms_planner.stop import Stop
 from uvms_planner.straight_motion import StraightMotion
 from uvms_planner.timed_motion import TimedMotion
-from uvms_planner.whole_path import PathPlan
+from uvms_planner.whole_path.window import TimedPlan
 
 PREEMPTED = "pre-empted by a new goal"
 """Why a goal ended in whose place another one began."""
@@ -184,7 +184,7 @@ class MotionPlanner:
         if motion is None or stamp < motion.start:
             return None
         planned = motion.motion if isinstance(motion, PlannedPath) else motion
-        if not isinstance(planned, PathPlan | TimedMotion):
+        if not isinstance(planned, TimedPlan | TimedMotion):
             return None
         samples = planned.sample(np.array([motion.elapsed(stamp)]))
         c, rate, acceleration = (

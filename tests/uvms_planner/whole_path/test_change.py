@@ -16,6 +16,7 @@ CASES = {
     "1 N in the gripper of a small vehicle": ("bluerov2", "circle", {15.0: payload(1.0)}),
     "a dead thruster of a small vehicle": ("bluerov2", "circle", {15.0: dead(1, 6)}),
 }
+SETTLED_S = 0.5
 
 
 @pytest.fixture(scope="module", params=CASES, ids=lambda name: name.replace(" ", "-"))
@@ -81,5 +82,6 @@ def test_thrusters_that_have_less_than_the_plan_needs_are_planned_with(vehicle):
     shares = plan.values(plan.instants())[:, THRUST : THRUST + count]
     left = shares[plan.instants() > 5.0].max() / 1.1
     found = follow(vehicle, "circle", {5.0: weak(np.full(count, left))})
-    worst = found.since_the_change().worst
+    # at the change itself the motion is as it is: its acceleration does not jump
+    worst = found.since_the_change(SETTLED_S).worst
     assert worst.share < 1.001, worst

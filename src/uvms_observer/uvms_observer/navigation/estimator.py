@@ -25,7 +25,11 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.unknown_motion import GAP, gap_spread, spread
+from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
+
+MOST = np.repeat([np.radians(1.0), 0.1], 3)
+"""Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
+vehicle that was pushed."""
 
 
 class Estimator:
@@ -105,8 +109,10 @@ class Estimator:
         self._rate, self._force, self._inertial = screened.rate, screened.force, sample.stamp
         if screened.turn is not None and screened.change is not None:
             spread(tuple(self.state), screened.turn, screened.change, dt)
+        if screened.owed is not None:
+            change_velocity(tuple(self.state), screened.owed)
         if screened.step is not None:
-            doubt = np.square(np.concatenate(screened.step))
+            doubt = np.square(np.clip(np.concatenate(screened.step), -MOST, MOST))
             self.state.covariance[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(doubt)
 
     def _propagate(self, stamp: int, rate: Array, force: Array) -> None:

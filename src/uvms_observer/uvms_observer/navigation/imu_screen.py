@@ -4,7 +4,8 @@ A reading that leaves the last good one by more than a vehicle can jerk, or than
 not integrated: the last good reading stands in for it. Whether it was a spike or a knock, nobody
 can tell from one sample, so that velocity and attitude become uncertain by what it would have
 changed them. Readings that stay where they have jumped to are believed, as a force that lasts or
-as a bias that has stepped: the biases become uncertain by the jump.
+as a bias that has stepped: the velocity gets what was held back (the attitude has it by then,
+by the gyrocompass), and where they stay, as a bias does, the biases become uncertain by the jump.
 """
 
 from typing import NamedTuple
@@ -21,6 +22,10 @@ ANGULAR_JERK_RAD_S2 = 3.0
 """Of the rate: 0.3 rad/s within 0.1 s."""
 CONFIRM = 3
 """Readings one after the other that must agree before a jump is believed."""
+STAYS = 0.2
+"""Share of a jump by which readings after it may differ from one another where it is a step."""
+LONGEST = 5
+"""Readings in a row that may be held back: nothing but violent motion makes so many."""
 
 
 class Screened(NamedTuple):
@@ -31,6 +36,7 @@ class Screened(NamedTuple):
     turn: Array | None  # (3,) rad, std of a turn that was held back, body axes
     change: Array | None  # (3,) m/s, std of a change of velocity that was held back, body axes
     step: tuple[Array, Array] | None  # of rate and force (3,), where a jump is believed now
+    owed: Array | None  # (3,) m/s, change of velocity that was held back before that, body axes
 
 
 class ScreenMemory(NamedTuple):
@@ -40,7 +46,10 @@ class ScreenMemory(NamedTuple):
     force: Array
     odd_rate: Array  # last one held back
     odd_force: Array
+    owed: Array  # (3,) m/s, change of velocity by those held back in a row, body axes
     agreeing: int = 0  # readings held back in a row that agree
+    row: int = 0  # readings held back in a row
+    going_on: bool = False  # whether these do not stay where they have jumped to
     held: int = 0  # readings held back so far, for the diagnostics
 
 
@@ -60,16 +69,25 @@ class ImuScreen:
     ) -> tuple[Screened, ScreenMemory]:
         """A reading `dt` s after the last one."""
         if self._agree(memory.rate, memory.force, rate, force, dt):
-            return Screened(rate, force, None, None, None), _after(memory, rate, force)
+            return Screened(rate, force, None, None, None, None), _after(memory, rate, force)
         agreeing = 1
         if memory.agreeing and self._agree(memory.odd_rate, memory.odd_force, rate, force, dt):
             agreeing = memory.agreeing + 1
-        if agreeing >= CONFIRM:
-            step = rate - memory.rate, force - memory.force
-            return Screened(rate, force, None, None, step), _after(memory, rate, force)
-        turn, change = np.abs(rate - memory.rate) * dt, np.abs(force - memory.force) * dt
-        held = ScreenMemory(memory.rate, memory.force, rate, force, agreeing, memory.held + 1)
-        return Screened(memory.rate, memory.force, turn, change, None), held
+        step = rate - memory.rate, force - memory.force
+        going_on = memory.going_on or (memory.row > 0 and _goes_on(memory, rate, force, *step))
+        if agreeing >= CONFIRM or memory.row + 1 >= LONGEST:
+            stepped = None if going_on else step
+            return Screened(rate, force, None, None, stepped, memory.owed), _after(
+                memory, rate, force
+            )
+        turn, change = step[0] * dt, step[1] * dt
+        held = ScreenMemory(
+            memory.rate, memory.force, rate, force,
+            memory.owed + change,
+            agreeing, memory.row + 1, going_on, memory.held + 1,
+        )  # fmt: skip
+        unknown = np.abs(turn), np.abs(change)
+        return Screened(memory.rate, memory.force, *unknown, None, None), held
 
     def _agree(
         self, rate: Array, force: Array, new_rate: Array, new_force: Array, dt: float
@@ -81,10 +99,18 @@ class ImuScreen:
         )
 
 
-def remember(rate: Array, force: Array) -> ScreenMemory:
-    """The memory after the first reading, which has to be believed."""
-    return ScreenMemory(rate, force, rate, force)
+def _goes_on(memory: ScreenMemory, rate: Array, force: Array, turned: Array, pushed: Array) -> bool:
+    """Whether a reading is off the one before it by a good part of what it is off the good one."""
+    return bool(
+        max(abs(rate - memory.odd_rate)) > STAYS * max(abs(turned))
+        and max(abs(force - memory.odd_force)) > STAYS * max(abs(pushed))
+    )
+
+
+def remember(rate: Array, force: Array, held: int = 0) -> ScreenMemory:
+    """The memory after a reading that is believed."""
+    return ScreenMemory(rate, force, rate, force, np.zeros(3), held=held)
 
 
 def _after(memory: ScreenMemory, rate: Array, force: Array) -> ScreenMemory:
-    return ScreenMemory(rate, force, rate, force, 0, memory.held)
+    return remember(rate, force, memory.held)

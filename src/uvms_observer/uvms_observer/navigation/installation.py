@@ -11,7 +11,7 @@ from uvms_observer.navigation.propagation import ProcessNoise
 
 FAULTY_GYRO_DEG_S = 1.0
 """Std of the bias of a gyro that something has happened to."""
-FAULTY_ACCELEROMETER_M_S2 = 0.3
+FAULTY_ACCELEROMETER_M_S2 = 1.0
 """The same of an accelerometer."""
 
 

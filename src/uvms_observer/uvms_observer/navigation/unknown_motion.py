@@ -55,3 +55,13 @@ def spread(fields: Fields, turn: Array, change: Array, dt: float) -> None:
             P[i, j] += 0.25 * dt**2 * moved
             P[i, 3 + j] += 0.5 * dt * moved
             P[3 + i, j] += 0.5 * dt * moved
+
+
+@exact_kernel
+def change_velocity(fields: Fields, change: Array) -> None:
+    """Change the velocity by `change` (3,) m/s, body axes."""
+    state = NavigationState(*fields)
+    R = quat_to_matrix(state.quaternion)
+    for i in range(3):
+        for k in range(3):
+            state.velocity[i] += R[i, k] * change[k]
