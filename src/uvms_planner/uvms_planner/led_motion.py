@@ -7,11 +7,11 @@ the last one.
 """
 
 from dataclasses import dataclass
-from typing import Self
 
 import numpy as np
 
 from uvms_core.end_effector_path import PathSamples
+from uvms_core.errors import SignalError
 from uvms_core.pointing import Directions
 from uvms_core.signals import Array, to_seconds
 from uvms_planner.errors import GoalRejected
@@ -50,8 +50,8 @@ class Approach:
         return PathSamples(found.configuration, found.rate, found.acceleration, None, None, None)
 
     def directions(self, times: Array) -> Directions:
-        """No axis of the tool is to point anywhere."""
-        raise NotImplementedError("an approach has no tool_axis")
+        """As of EndEffectorPath without a tool_axis: raises SignalError."""
+        raise SignalError("an approach has no tool_axis, and so no directions for it")
 
 
 class LedMotion(TimedMotion):
@@ -73,10 +73,6 @@ class LedMotion(TimedMotion):
     def from_stamp(self, stamp: int) -> TimedPlan:
         """The same plan with its times counted from a stamp, ns."""
         return TimedPlan(to_seconds(self.start - stamp), self._plan.plan)
-
-    def starting(self, stamp: int) -> Self:
-        """It begins from a motion, and no other than that of its stamp."""
-        raise NotImplementedError("a led motion begins where it was planned from")
 
 
 def led_to(

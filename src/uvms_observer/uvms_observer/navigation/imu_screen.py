@@ -76,10 +76,8 @@ class ImuScreen:
         step = rate - memory.rate, force - memory.force
         going_on = memory.going_on or (memory.row > 0 and _goes_on(memory, rate, force, *step))
         if agreeing >= CONFIRM or memory.row + 1 >= LONGEST:
-            stepped = None if going_on else step
-            return Screened(rate, force, None, None, stepped, memory.owed), _after(
-                memory, rate, force
-            )
+            believed = Screened(rate, force, None, None, None if going_on else step, memory.owed)
+            return believed, _after(memory, rate, force)
         turn, change = step[0] * dt, step[1] * dt
         held = ScreenMemory(
             memory.rate, memory.force, rate, force,

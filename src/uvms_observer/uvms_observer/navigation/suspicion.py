@@ -1,9 +1,9 @@
 """Whether the estimate is wrong where a sensor is rejected.
 
 A sensor that is rejected sample after sample, or whose residuals are together too large to be
-noise, lies, or what it is compared with is wrong. The filter
-tries what that may be: from the last sample on that was used, the same samples are taken by an
-estimator that doubts something else. If it explains them all it goes on in place of the first one.
+noise, lies, or what it is compared with is wrong. The filter tries what that may be: from the last
+sample on that was used, the same samples are taken by an estimator that doubts something else. If
+it explains them all it goes on in place of the first one.
 
 - The inertial unit, whose biases may step. A sensor that lies jumps and then goes on as before,
   which no bias explains: it stays rejected.
