@@ -38,6 +38,7 @@ setup(
             "pressure = uvms_dynamics.simulation.sensors.pressure:PressureSensor",
             "gps = uvms_dynamics.simulation.sensors.gps:GpsSensor",
             "position_fix = uvms_dynamics.simulation.sensors.position_fix:PositionFixSensor",
+            "target_marker = uvms_dynamics.simulation.sensors.target_marker:TargetMarkerSensor",
         ],
         "uvms.kernels": ["uvms_dynamics = uvms_dynamics.kernels"],
     },

@@ -47,6 +47,7 @@ setup(
             "pressure = uvms_observer.navigation.measurements.pressure:PressureDepth",
             "gps = uvms_observer.navigation.measurements.gps:GpsPosition",
             "position_fix = uvms_observer.navigation.measurements.position_fix:FixPosition",
+            "target_marker = uvms_observer.navigation.measurements.target_marker:MarkerPose",
         ],
         "uvms.kernels": ["uvms_observer = uvms_observer"],
     },

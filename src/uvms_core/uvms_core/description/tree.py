@@ -96,6 +96,10 @@ def _sensors(vehicle: Vehicle) -> Iterator[Branch]:
     for sensor in sensor_types(vehicle):
         pose = np.array(mounted[sensor.name].position_m), np.eye(3)
         yield Branch(sensor.mounting_frame, topics.BODY_FRAME, pose)
+        rotation = getattr(mounted[sensor.name], "sensor_axes", None)
+        if rotation is not None:  # its messages are in a frame with axes of its own
+            own = np.zeros(3), rotation
+            yield Branch(sensor.topic.frame, sensor.mounting_frame, own)
 
 
 def _thrusters(vehicle: Vehicle) -> Iterator[Branch]:

@@ -14,6 +14,7 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.target import correct_target
 
 
 @exact_kernel
@@ -39,8 +40,9 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
     if not distance <= gate:
         return distance
     K = PHt @ S_inverse
+    correct_target(state, H, K, N, residual)
     _correct_covariance(state.covariance, K, H, N)
-    _add_error(state, K @ residual)
+    add_error(state, K @ residual)
     return distance
 
 
@@ -60,7 +62,7 @@ def _correct_covariance(P: Array, K: Array, H: Array, N: Array) -> None:
 
 
 @exact_inner
-def _add_error(state: NavigationState, e: Array) -> None:
+def add_error(state: NavigationState, e: Array) -> None:
     """Add the error, state <- state (+) e; the attitude error turns about the axes of map_ned."""
     turned = quat_multiply(rotation_vector_to_quat(e[6:9]), state.quaternion)
     length = np.sqrt(turned.dot(turned))

@@ -93,6 +93,7 @@ class Estimator:
     def _align(self, sample: ImuSample) -> None:
         self.state = aligned(sample, self._imu, self._config, self.start)
         for each in self._measurements.values():
+            self.state = each.begin(self.state)
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance
         self.time = self._inertial = sample.stamp

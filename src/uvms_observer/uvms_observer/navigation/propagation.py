@@ -79,6 +79,8 @@ def propagate(
     _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity)
     _decay_biases(state, bias_variance, phi)
     _advance_covariance(state.covariance, R, thrust, dt, phi)
+    for i in range(state.cross.shape[0]):  # the target stays where it is
+        _transition(state.cross[i], R, thrust, dt, phi)
     _add_noise(state.covariance, dt, phi, gyro, accelerometer, bias_variance)
 
 

@@ -47,6 +47,11 @@ class NavigationState(NamedTuple):
     compass_bias: Array  # (3,) rad, of the gyrocompass, a turn about the body axes
     instrument_bias: Array  # (2,) scale error of the DVL, and bias of the depth in m
     covariance: Array  # (20, 20) of the error state
+    target: Array = np.zeros(
+        0
+    )  # (7,) pose of the work object, see `target.py`; (0,): there is none
+    cross: Array = np.zeros((0, SIZE))  # (6, 20) covariance of its error with the error state
+    target_covariance: Array = np.zeros((0, 0))  # (6, 6) of its error
 
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""

@@ -34,6 +34,10 @@ class Measurement(ABC):
         self.initial_variance: Mapping[int, float] = {}
         """Variance of the error states of this sensor at the start, by index in the state."""
 
+    def begin(self, state: NavigationState) -> NavigationState:
+        """The state at the start with what this sensor adds to it."""
+        return state
+
     def usable(self, sample: Any) -> bool:
         """Whether the sample says anything; a GPS under water does not."""
         return True
