@@ -92,7 +92,7 @@ class Errors:
 
 
 def misalignment(seed: int, sensor: str, std_deg: float) -> Array | None:
-    """sensor_axes (3, 3) of a mount that is off by this std about each axis; None: by nothing."""
+    """R_body_sensor (3, 3) of a mount that is off by this std about each axis; None: by nothing."""
     if std_deg == 0.0:
         return None
     turn = _drawn(seed, f"sensors/{sensor}/misalignment", np.radians(_full(std_deg, 3)))
