@@ -1,6 +1,7 @@
 """What is gathered during a run for the record of its end."""
 
 from dataclasses import dataclass, field
+from typing import Any
 
 from uvms_analysis.log.run_end import RunEnd
 
@@ -14,6 +15,7 @@ class Ending:
     lost: dict[str, int] = field(default_factory=dict)
     foreign: tuple[str, ...] = ()
     incidents: list[str] = field(default_factory=list)
+    goals: tuple[dict[str, Any], ...] = ()
 
     def record(self, asked_s: float, stopped_by: str) -> RunEnd:
         """The record for the log.
@@ -30,4 +32,5 @@ class Ending:
             self.lost,
             self.foreign,
             tuple(self.incidents),
+            self.goals,
         )

@@ -11,12 +11,13 @@ from uvms_bringup.pose_spec import PoseSpec
 from uvms_core.config import Config
 from uvms_core.errors import ConfigError
 from uvms_core.signals import Array, JointGoal, PathGoal, PoseGoal
+from uvms_core.signals import Goal as AnyGoal
 from uvms_core.vehicle import Vehicle, load_vehicle
 from uvms_core.vehicle.frames import arm_length
 from uvms_core.vehicle.locate import vehicle_path
 from uvms_core.vehicle.postures import JointAngles, joint_angles_deg
 from uvms_dynamics import build_model, end_effector
-from uvms_dynamics.kernels.rotations import matrix_to_quat, rpy_to_quat
+from uvms_dynamics.kernels.rotations import matrix_to_quat, quat_to_rpy, rpy_to_quat
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.plant.config import initial_joints, initial_joints_deg
 from uvms_planner import PathSpec
@@ -132,6 +133,21 @@ class Goal(Config):
         if self.pose is not None:
             return (self.pose.duration_s or 0.0) + self.pose.hold_s
         return self.joints.times_s[-1] if self.joints is not None else 0.0
+
+
+def start_after(goal: AnyGoal | None, start: PlantConfig) -> PlantConfig:
+    """Where a goal leads that begins at `start`: what comes after it begins there.
+
+    After a path the vehicle counts as where it was before: where it ends, only the planner knows.
+    """
+    if isinstance(goal, PoseGoal):
+        yaw = float(np.degrees(quat_to_rpy(goal.quaternion)[2]))
+        pose = {"initial_position_m": tuple(goal.position), "initial_rpy_deg": (0.0, 0.0, yaw)}
+        return start.model_copy(update=pose)
+    if isinstance(goal, JointGoal):
+        angles = tuple(np.degrees(goal.positions[-1]).tolist())
+        return start.model_copy(update={"initial_joints_deg": angles})
+    return start
 
 
 def start_of_end_effector(vehicle: Vehicle, plant: PlantConfig) -> tuple[Array, Array]:

@@ -8,8 +8,9 @@ from typing import Any
 
 from pydantic import BaseModel, Field, ValidationInfo, field_validator
 
+from uvms_bringup.agenda import Goals
 from uvms_bringup.errors import ScenarioError
-from uvms_bringup.goal import Goal
+from uvms_bringup.goal import Goal, start_after
 from uvms_bringup.locate import known_scenarios
 from uvms_bringup.longest_run import LONGEST_RUN_S
 from uvms_bringup.start import check_start
@@ -79,6 +80,11 @@ class Scenario(Config):
     goal: Goal = Field(
         Goal(), description="what the planner is asked for; none: to hold the pose of the start"
     )
+    goals: tuple[Goal, ...] = Field(
+        (),
+        description="several goals instead of one: each begins when the one before it has"
+        " succeeded; `frame: start` is then where the goals before it lead",
+    )
 
     events: Events = Field(
         (),
@@ -95,6 +101,16 @@ class Scenario(Config):
                 " letters, digits, spaces and the signs _ . + -"
             )
         return name
+
+    @field_validator("goals")
+    @classmethod
+    def _are_goals(cls, own: tuple[Goal, ...], info: ValidationInfo) -> tuple[Goal, ...]:
+        if own and info.data.get("goal", Goal()) != Goal():
+            raise ValueError("a scenario has either goal or goals")
+        for number, goal in enumerate(own):
+            if goal == Goal():
+                raise ValueError(f"goals.{number}: has none of path, joints and pose")
+        return own
 
     @field_validator("events", mode="before")
     @classmethod
@@ -168,7 +184,28 @@ class Scenario(Config):
         angles = initial_joints_deg(vehicle, self.plant)
         start = {"initial_posture": STOWED, "initial_joints_deg": angles}
         goal = self.goal.for_vehicle(vehicle, self.plant)
-        return self.model_copy(update={"plant": self.plant.model_copy(update=start), "goal": goal})
+        goals = tuple(each.for_vehicle(vehicle, self.plant) for each in self.goals)
+        plant = self.plant.model_copy(update=start)
+        return self.model_copy(update={"plant": plant, "goal": goal, "goals": goals})
+
+    def build_goals(self, vehicle: Vehicle) -> Goals:
+        """The goal of a run with this vehicle, or its goals in turn.
+
+        Raises:
+            ScenarioError: one of them does not fit; says which.
+            VehicleFileError: there is no vehicle `path_made_for`.
+        """
+        if not self.goals:
+            return self.goal.build(vehicle, self.plant)
+        built, start = [], self.plant
+        for number, goal in enumerate(self.goals):
+            try:
+                wanted = goal.build(vehicle, start)
+            except ScenarioError as fault:
+                raise ScenarioError(f"goals.{number}: {fault}") from fault
+            start = start_after(wanted, start)
+            built.append(wanted)
+        return tuple(each for each in built if each is not None)
 
 
 def load_scenario(
@@ -222,14 +259,23 @@ def _read_scenario(path: Path) -> dict[str, Any]:
 
 def _make_absolute(data: dict[str, Any], folder: Path) -> None:
     """Let every relative path to a vehicle file or a table start at `folder`."""
-    goal = _group(data, "goal")
-    path = _group(goal, "path")
-    vehicles = ((data, "vehicle"), (goal, "path_made_for"))
-    for group, name in (*vehicles, (path, "csv"), (_group(path, "csv"), "file")):
-        value = group.get(name)
-        is_table = group is not data and group is not goal
-        if isinstance(value, str) and (is_table or value.endswith(FILE_SUFFIXES)):
-            group[name] = str((folder / value).resolve())
+    _make_file_absolute(data, "vehicle", folder)
+    several = data.get("goals")
+    for goal in (_group(data, "goal"), *(several if isinstance(several, list) else ())):
+        if not isinstance(goal, dict):
+            continue
+        path = _group(goal, "path")
+        _make_file_absolute(goal, "path_made_for", folder)
+        for group, name in ((path, "csv"), (_group(path, "csv"), "file")):
+            if isinstance(value := group.get(name), str):
+                group[name] = str((folder / value).resolve())
+
+
+def _make_file_absolute(group: dict[str, Any], name: str, folder: Path) -> None:
+    """Of a name or file of a vehicle, the file."""
+    value = group.get(name)
+    if isinstance(value, str) and value.endswith(FILE_SUFFIXES):
+        group[name] = str((folder / value).resolve())
 
 
 def _group(data: dict[str, Any], name: str) -> dict[str, Any]:

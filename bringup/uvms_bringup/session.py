@@ -18,6 +18,7 @@ from uvms_analysis.log.memory import MemoryWriter
 from uvms_analysis.log.read import RUN
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.summary import summarise
+from uvms_bringup.agenda import Agenda, Goals, path_of
 from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Claim, Holder
 from uvms_bringup.ending import Ending
@@ -30,14 +31,12 @@ from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
 from uvms_bringup.stopped import SignalWatch, Stopped
 from uvms_core.errors import UvmsError
-from uvms_core.signals import Goal as AnyGoal
-from uvms_core.signals import PathGoal, to_nanoseconds
+from uvms_core.signals import to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
 from uvms_core.yaml_text import dump_yaml
 from uvms_dynamics.simulation.plant.as_built import AsBuilt, as_built
 from uvms_planner.errors import GoalRejected
 
-Goal = AnyGoal | None
 VEHICLE_FILE = "vehicle.yaml"
 BAG_FILE = "metadata.yaml"
 SUMMARY_FILE = "summary.json"
@@ -79,7 +78,7 @@ class Session:
 
     scenario: Scenario
     vehicle: Vehicle
-    goal: Goal
+    goal: Goals
     folder: Path
     pace: str
     command: str
@@ -182,8 +181,8 @@ class Session:
         built = as_built(self.vehicle, self.scenario.plant, self.scenario.seed)
         if built.differs:
             log.attach(plant_record.VEHICLE_FILE, dump_vehicle(built.vehicle), "application/yaml")
-        if isinstance(self.goal, PathGoal):
-            log.attach("path.json", path_to_json(self.goal), "application/json")
+        if (path := path_of(self.goal)) is not None:
+            log.attach("path.json", path_to_json(path), "application/json")
         records = run_records(self.scenario, built, self.pace, self.command, self.holder.run_id)
         for name, record in records.items():
             log.metadata(name, record)
@@ -200,17 +199,17 @@ class Session:
 def simulate_goal(
     scenario: Scenario,
     vehicle: Vehicle,
-    goal: Goal,
+    goal: Goals,
     log: SignalWriter | MemoryWriter,
     ending: Ending,
     progress: Progress = lambda stamp, text: None,
 ) -> None:
     """`simulate`, noting what became of the goal."""
-    began = goal is not None
-    ending.goal = "running" if began else "none"
-    succeeded = simulate(scenario, vehicle, goal, log, progress)
-    if began:
-        ending.goal = "succeeded" if succeeded else "aborted"
+    agenda = Agenda(goal)
+    try:
+        simulate(scenario, vehicle, agenda, log, progress)
+    finally:
+        ending.goal, ending.goals = agenda.state, agenda.records()
 
 
 def run_records(
@@ -241,7 +240,7 @@ def prepare(
     """
     vehicle = scenario.load_vehicle()
     scenario = scenario.for_vehicle(vehicle)
-    goal = scenario.goal.build(vehicle, scenario.plant)
+    goal = scenario.build_goals(vehicle)
     holder = Holder(new_run_id(), os.getpid(), command)
     if output == "":
         raise RunError("--output '': give the name of a folder")

@@ -4,6 +4,7 @@ from collections.abc import Callable
 
 from uvms_analysis.log.encode import SignalWriter
 from uvms_analysis.log.memory import MemoryWriter
+from uvms_bringup.agenda import Agenda, Goals
 from uvms_bringup.loop import Loop, LoopTick
 from uvms_bringup.scenario import Scenario
 from uvms_core import diagnostics, topics
@@ -11,6 +12,7 @@ from uvms_core.description import StateFrames, description_message, static_messa
 from uvms_core.diagnostics import Status
 from uvms_core.signals import Goal, to_nanoseconds
 from uvms_core.vehicle import Vehicle
+from uvms_planner.errors import GoalRejected
 
 Progress = Callable[[int, str], None]
 
@@ -18,7 +20,7 @@ Progress = Callable[[int, str], None]
 def simulate(
     scenario: Scenario,
     vehicle: Vehicle,
-    goal: Goal | None,
+    goal: Goals | Agenda,
     log: SignalWriter | MemoryWriter | None = None,
     progress: Progress = lambda stamp, text: None,
     observe: Callable[[LoopTick], None] = lambda tick: None,
@@ -26,7 +28,8 @@ def simulate(
     """Run a scenario; True if it was completed.
 
     Args:
-        goal: what the planner is asked for, once the loop is closed at the first tick.
+        goal: what the planner is asked for, once the loop is closed at the first tick: one goal,
+            or several, of which each begins when the one before it has succeeded.
         log: receives every signal; None: no log.
         progress: called with the stamp in ns and a line of text, at each tick.
         observe: called with every tick.
@@ -36,11 +39,11 @@ def simulate(
         PlantDiverged: the state is not finite any more.
     """
     loop = Loop(scenario, vehicle)
+    agenda = goal if isinstance(goal, Agenda) else Agenda(goal)
     frames = StateFrames(vehicle)
     end = to_nanoseconds(scenario.duration_s)
     if log is not None:
         write_description(log, vehicle)
-    succeeded = True
     tick: LoopTick | None = None
     try:
         while True:
@@ -49,17 +52,31 @@ def simulate(
                 write_tick(log, tick, frames)
             observe(tick)
             progress(tick.stamp, "")
-            if tick.plan is not None and tick.plan.finished is not None:
-                succeeded = tick.plan.finished.success
+            if tick.plan is not None and tick.plan.finished is not None and agenda.active:
+                finished = tick.plan.finished
+                state = "succeeded" if finished.success else "aborted"
+                agenda.end(tick.stamp, state, finished.message)
             if tick.stamp >= end:
-                return succeeded
-            if tick.stamp == 0 and goal is not None:
-                loop.planner.accept(goal)
+                return agenda.state in ("none", "running", "succeeded")
+            if agenda.due is not None and tick.plan is not None:
+                _begin(agenda, agenda.due, loop, tick.stamp)
             loop.advance(tick)
     finally:  # what was counted is known whatever ended the run
         if log is not None and tick is not None:
             for status in loop.final_status(tick):
                 log.write(topics.DIAGNOSTICS, status)
+
+
+def _begin(agenda: Agenda, goal: Goal, loop: Loop, stamp: int) -> None:
+    """Begin a goal; a further one that is rejected ends the agenda, and the run goes on."""
+    try:
+        loop.planner.accept(goal)
+    except GoalRejected as fault:
+        if not agenda.begun:
+            raise
+        agenda.refuse(stamp, str(fault))
+    else:
+        agenda.begin(stamp)
 
 
 def write_description(log: SignalWriter | MemoryWriter, vehicle: Vehicle) -> None:
@@ -73,7 +90,8 @@ def write_tick(log: SignalWriter | MemoryWriter, tick: LoopTick, frames: StateFr
     for topic, signal in tick.outputs:
         log.write(topic, signal)
     joints = tick.sensors.joints
-    log.write_made(topics.TF, tick.stamp, frames.message, tick.odometry, joints)
+    if tick.odometry is not None:
+        log.write_made(topics.TF, tick.stamp, frames.message, tick.odometry, joints)
     if tick.plan is not None:
         values = {"step_ms": tick.step_ms[topics.MOTION_PLANNER]} | tick.plan.diagnostics()
         log.write(

@@ -78,7 +78,7 @@ def main() -> int:
         ):
             scenario = load_scenario(name, settings, duration_s=WARM_S)
             vehicle = scenario.load_vehicle()
-            simulate(scenario, vehicle, scenario.goal.build(vehicle, scenario.plant))
+            simulate(scenario, vehicle, scenario.build_goals(vehicle))
         _clearances_of_a_log(vehicle)
     return 0
 

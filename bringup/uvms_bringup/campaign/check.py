@@ -67,7 +67,7 @@ def _loaded(run: Run) -> tuple[Scenario, Scenario, Vehicle]:
     scenario = run.load()
     vehicle = scenario.load_vehicle()
     own = scenario.for_vehicle(vehicle)
-    own.goal.build(vehicle, own.plant)
+    own.build_goals(vehicle)
     return scenario, own, vehicle
 
 

@@ -4,6 +4,7 @@ from typing import Any
 
 from uvms_analysis.log.memory import MemoryWriter
 from uvms_analysis.summary import LOADED, summarise
+from uvms_bringup.agenda import path_of
 from uvms_bringup.ending import Ending
 from uvms_bringup.pace import Pace
 from uvms_bringup.scenario import Scenario
@@ -21,7 +22,7 @@ def summary_of(scenario: Scenario) -> dict[str, Any]:
     """
     vehicle = scenario.load_vehicle()
     scenario = scenario.for_vehicle(vehicle)
-    goal = scenario.goal.build(vehicle, scenario.plant)
+    goal = scenario.build_goals(vehicle)
     writer, ending, clock = MemoryWriter(vehicle, LOADED), Ending(), Stopwatch()
     stopped_by = ""
     try:
@@ -37,6 +38,6 @@ def summary_of(scenario: Scenario) -> dict[str, Any]:
     built = as_built(vehicle, scenario.plant, scenario.seed)
     end = ending.record(scenario.duration_s, stopped_by)
     log = writer.log(
-        run_records(scenario, built, str(Pace())), effective_values(scenario), goal, end
+        run_records(scenario, built, str(Pace())), effective_values(scenario), path_of(goal), end
     )
     return summarise(log, wall_s=clock.run_s)

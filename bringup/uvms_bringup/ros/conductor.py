@@ -13,6 +13,7 @@ from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
 from unique_identifier_msgs.msg import UUID
 
+from uvms_bringup.agenda import Agenda, Goals
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.acknowledge import Acknowledgement
 from uvms_bringup.ros.graph_watch import CONDUCTOR, DISCOVERY_S, REST_S, GraphWatch
@@ -95,6 +96,9 @@ class Conductor(Node):
         self.result: Any = None
         self.result_status: int | None = None  # action_msgs/msg/GoalStatus
         self.goal_handle: Any = None
+        self.agenda = Agenda(None)
+        self._clients: dict[str, Any] = {}  # of actions, by name
+        self._sent: Any = None  # the answer to a further goal that has been sent
         self.create_subscription(
             message_class(topics.DIAGNOSTICS),
             topics.DIAGNOSTICS.name,
@@ -139,7 +143,7 @@ class Conductor(Node):
         """Newest simulation time, ns."""
         return self.recorder.stamp
 
-    def conduct(self, spinner: Spinner, goal: Goal | None) -> None:
+    def conduct(self, spinner: Spinner, goal: Goals) -> None:
         """Bring the run to its first tick, send the goal and start time."""
         self.recorder.on_clock = spinner.yield_turn
         self._await_nodes(spinner)
@@ -154,8 +158,10 @@ class Conductor(Node):
             START_PATIENCE_S,
             lambda: f"the first thruster_command; nothing yet from {', '.join(self._silent())}",
         )
-        if goal is not None:
-            self.send_goal(spinner, goal)
+        self.agenda = Agenda(goal)
+        if (first := self.agenda.due) is not None:
+            self.send_goal(spinner, first)
+            self.agenda.begin(self.stamp)
         self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
 
     def arrived(self, end: int) -> bool:
@@ -198,12 +204,11 @@ class Conductor(Node):
     def send_goal(self, spinner: Spinner, goal: Goal) -> None:
         """Ask the planner for a goal; RunError with its reason where it is rejected."""
         action = topics.action_of(goal)
-        cls = action_class(action)
-        self._client = ActionClient(self, cls, action.name)
+        client, cls = self._client_of(goal)
         message = to_ros(cls.Goal, to_message(action, goal, self._joint_names))
         self._await(
             spinner,
-            self._client.server_is_ready,
+            client.server_is_ready,
             ANSWER_PATIENCE_S,
             lambda: f"a server of the action {action.name!r}",
         )
@@ -212,8 +217,8 @@ class Conductor(Node):
             uuid=list(uuid.uuid4().bytes)
         )  # the same for every repetition, so that no second goal is created
         request = Request(
-            lambda: self._client.send_goal_async(message, self._take_feedback, goal_id),
-            self._client.server_is_ready,
+            lambda: client.send_goal_async(message, self._take_feedback, goal_id),
+            client.server_is_ready,
         )
         handle = self._answer_to(spinner, request, f"motion_planner: {action.name}")
         if not handle.accepted:
@@ -288,10 +293,54 @@ class Conductor(Node):
         return self.losses.silent()
 
     def goal_state(self) -> str:
-        """What became of the goal, as `RunEnd.goal` has it."""
+        """What became of the last goal that was sent, as `RunEnd.goal` has it."""
         if self.goal_handle is None:
             return "none"
         return GOAL_STATES.get(self.result_status or 0, "running")
+
+    def hear(self) -> None:
+        """Note the end of the goal that is active."""
+        if self.agenda.active and self.result is not None:
+            self.agenda.end(self.stamp, self.goal_state(), self.result.message)
+
+    def go_on(self) -> None:
+        """Where a goal has succeeded, ask for the next one; time goes on meanwhile."""
+        self.hear()
+        goal = self.agenda.due
+        if goal is None:
+            return
+        if self._sent is None:
+            self._send(goal)
+        elif self._sent.done():
+            self._take_answer(self._sent.result())
+            self._sent = None
+
+    def _send(self, goal: Goal) -> None:
+        """Ask the planner for a further goal, once the server of its action is found."""
+        client, cls = self._client_of(goal)
+        if client.server_is_ready():
+            action = topics.action_of(goal)
+            message = to_ros(cls.Goal, to_message(action, goal, self._joint_names))
+            self._faults.clear()
+            self._sent = client.send_goal_async(message, self._take_feedback)
+
+    def _client_of(self, goal: Goal) -> tuple[Any, Any]:
+        """The client of a goal's action, and the action's class."""
+        action = topics.action_of(goal)
+        cls = action_class(action)
+        if action.name not in self._clients:
+            self._clients[action.name] = ActionClient(self, cls, action.name)
+        return self._clients[action.name], cls
+
+    def _take_answer(self, handle: Any) -> None:
+        if not handle.accepted:
+            reason = self._faults.get(topics.MOTION_PLANNER, "no reason given")
+            self.agenda.refuse(self.stamp, reason)
+            return
+        self.goal_handle, self.result, self.result_status = handle, None, None
+        self.feedback = None
+        self.agenda.begin(self.stamp)
+        handle.get_result_async().add_done_callback(self._take_result)
 
     def goal_failure(self) -> list[str]:
         """Why the run's goal did not succeed, in the planner's words, where it has ended."""
@@ -310,7 +359,8 @@ class Conductor(Node):
 
     def interference(self) -> list[str]:
         """What somebody else asked of the run's nodes, in words."""
-        goals = self._asked[diagnostics.GOALS_ACCEPTED] - (self.goal_handle is not None)
+        own = self.agenda.begun + (self._sent is not None)  # its acceptance may be counted first
+        goals = self._asked[diagnostics.GOALS_ACCEPTED] - own
         pauses = self._asked[diagnostics.PAUSES]
         found = [f"the planner accepted {goals} goals that were not this run's"] * (goals > 0)
         return found + [f"time was held {pauses} times by whoever called pause"] * (pauses > 0)

@@ -14,6 +14,7 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.log.compare import compare, table
 from uvms_analysis.log.read import RUN, RunLog
 from uvms_analysis.log.writer import LogWriter
+from uvms_bringup.agenda import in_turn
 from uvms_bringup.claim import Holder
 from uvms_bringup.errors import RunError, ScenarioError
 from uvms_bringup.pace import Pace
@@ -162,7 +163,7 @@ class NodeReplay:
 
     def _send_goal(self) -> None:
         """The planner's goal follows its first tick, as in every run."""
-        goal = self.scenario.goal.build(self._vehicle, self.scenario.plant)
+        goal = next(iter(in_turn(self.scenario.build_goals(self._vehicle))), None)
         if self.node != topics.MOTION_PLANNER or goal is None:
             return
         action = topics.action_of(goal)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from rclpy.node import Node
 
+from uvms_bringup.agenda import Goals
 from uvms_bringup.cast import Cast
 from uvms_bringup.claim import Holder
 from uvms_bringup.ending import Ending
@@ -26,7 +27,7 @@ from uvms_bringup.stopped import Stopped
 from uvms_core import registry, topics
 from uvms_core.ros.node import UvmsNode
 from uvms_core.ros.spin import Spinner, start
-from uvms_core.signals import Goal, to_nanoseconds, to_seconds
+from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import PlantConfig
 from uvms_dynamics.simulation.events import EventsConfig
@@ -59,7 +60,7 @@ class GraphRun:
 
     scenario: Scenario
     vehicle: Vehicle
-    goal: Goal | None
+    goal: Goals
     pace: Pace
     cast: Cast
     composed: bool
@@ -164,6 +165,7 @@ class GraphRun:
         def look() -> bool:
             self._watch(nodes, conductor)
             plant_watch.check()
+            conductor.go_on()
             self.progress(conductor.stamp, conductor.progress())
             return conductor.arrived(end)
 
@@ -196,7 +198,8 @@ class GraphRun:
 
     def _take_stock(self, conductor: Conductor, spinner: Spinner) -> None:
         """What the log does not show; only of a run that began."""
-        self.ending.goal = conductor.goal_state()
+        conductor.hear()
+        self.ending.goal, self.ending.goals = conductor.agenda.state, conductor.agenda.records()
         if topics.CLOCK.name not in conductor.recorder.newest:
             return
         self.ending.incidents += conductor.goal_failure()

@@ -198,9 +198,19 @@ class Analysis:
         A step that plans ahead of the path reports 0 s, which says nothing of when it begins.
         """
         for status in self.log.statuses(topics.MOTION_PLANNER):
+            if to_seconds(status.stamp) <= self._path_asked_s:
+                continue
             if (elapsed := status.number(ELAPSED)) > 0.0:
                 return round(to_seconds(status.stamp) - elapsed, 9)
         return self._fitted_start()
+
+    @cached_property
+    def _path_asked_s(self) -> float:
+        """When the planner accepted the path; -1 where nobody says."""
+        end = self.log.end
+        paths = [goal for goal in end.goals if goal["kind"] == "path"] if end is not None else []
+        began = paths[0]["began_s"] if paths else None
+        return -1.0 if began is None else float(began)
 
     def _fitted_start(self) -> float:
         if self.path is None or self.planned is None:

@@ -11,6 +11,7 @@ from uvms_analysis.check import check_log
 from uvms_analysis.clearance import NOTHING, least_clearances
 from uvms_analysis.counters import node_counters
 from uvms_analysis.errors import LogError, determine
+from uvms_analysis.goals_of import goals_of
 from uvms_analysis.happened import events_of, not_reached
 from uvms_analysis.log import plant_record
 from uvms_analysis.log.read import RunLog
@@ -103,6 +104,7 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
         "lockstep_timeouts": figures.of("lockstep_timeouts", lambda: run.lockstep_timeouts),
     }
     summary |= _precision(run, figures) | _effort(run, figures)
+    summary["goals"] = figures.of("goals", lambda: goals_of(run), [])
     summary["clearance_m"] = figures.of(
         "clearance_m", lambda: least_clearances(run), {**NOTHING, "planned": NOTHING}
     )

@@ -73,6 +73,10 @@ class Part(ABC):
         """Values for /diagnostics."""
         return {}
 
+    def withheld(self) -> Sequence[Topic]:
+        """Outputs that the last step left out on purpose, so that nobody waits for them."""
+        return ()
+
     def trouble(self) -> Trouble | None:
         """Why what it puts out cannot be relied on, for /diagnostics; None where it can."""
         return None
@@ -192,7 +196,7 @@ class InProcess:
 
     def _excuse(self, topic: Topic, stamp: int) -> None:
         self._excuses = True
-        for rule in self._rules[topic.name]:
+        for rule in self._rules.get(topic.name, ()):
             rule.excuse(stamp)
 
     def tick(self, stamp: int) -> Iterator[tuple[str, list[Output]]]:
@@ -209,6 +213,8 @@ class InProcess:
             outputs = self._step(role, part, tick)
             for topic, signal in outputs:
                 self._pass_on(topic, signal)
+            for topic in part.withheld():
+                self._excuse(topic, stamp)
             if self._faults:
                 outputs.append(self._diagnosis(role, stamp))
             if (trouble := part.trouble()) != self._troubles.get(role):

@@ -50,6 +50,8 @@ class NavigationEstimator(Protocol):
 
     A method `resume(estimate: Odometry)`, where there is one, is called before the first step of a
     filter that begins in the middle of a run: it begins there, as uncertain as the estimate says.
+    A method `waits_for() -> str`, where there is one, says after each step what it still waits for;
+    until it returns an empty text nothing is published.
     """
 
     @abstractmethod

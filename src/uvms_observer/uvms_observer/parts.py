@@ -5,13 +5,14 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from uvms_core import topics
-from uvms_core.diagnostics import ERROR, Trouble
+from uvms_core.diagnostics import ERROR, WARN, Trouble
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create, prepared
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import DisturbanceBudget, Odometry, Wrench
 from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
+from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle
 from uvms_observer.arrivals import sensor_inputs, used_sensors
 from uvms_observer.disturbance import ObserverConfig
@@ -51,7 +52,7 @@ class NavigationPart(Part):
         self.inputs = sensor_inputs(vehicle)
         self._faults: Sequence[UvmsError] = ()
         self._begun = False
-        self._known = True
+        self._known, self._waits_for = True, ""
         self._certain = CERTAIN * vehicle.sensors.gps.horizontal_noise_m + CERTAIN
         self._remembered: list[Odometry] = []
         self._good: Odometry | None = None
@@ -69,7 +70,12 @@ class NavigationPart(Part):
         if not self._begun:
             self._begin(tick.stamp)
         odometry, self._faults = self.filter.step_screened(tick.stamp, samples)
-        self._begun, self.estimate = True, odometry
+        self._begun = True
+        waits_for = getattr(self.filter, "waits_for", None)
+        self._waits_for = waits_for() if waits_for is not None else ""
+        if self._waits_for:
+            return
+        self.estimate = odometry
         yield topics.ODOMETRY, odometry
         if not self._known:
             variance = odometry.pose_covariance[0, 0] + odometry.pose_covariance[1, 1]
@@ -94,9 +100,16 @@ class NavigationPart(Part):
             self.remember(self._good)
         self.filter = create(self._config, self._vehicle)
         self._begun, self._known, self._good, self.estimate = False, True, None, None
+        self._waits_for = ""
+
+    def withheld(self) -> Sequence[Topic]:
+        """The odometry, as long as it would mean nothing."""
+        return (topics.ODOMETRY,) if self._waits_for else ()
 
     def trouble(self) -> Trouble | None:
         """Where the filter does not know the position, or does without a sensor."""
+        if self._waits_for:
+            return Trouble(WARN, self._waits_for)
         if not self._known:
             return LOST
         found = getattr(self.filter, "trouble", None)

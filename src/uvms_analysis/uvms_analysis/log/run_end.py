@@ -33,6 +33,9 @@ class RunEnd:
         lost: of these, how many the recorder never got, by full topic name; without zeros.
         foreign: endpoints that did not belong to the run, in words; empty: there were none.
         incidents: what else happened, in words: a node that died and was started again, say.
+        goals: of several goals in turn, or of one, what became of each: `kind` (path, joints or
+            pose), `state` (as `goal`, or `waiting`), `message`, `began_s` and `ended_s`. Logs of
+            before there were several have none.
     """
 
     asked_s: float
@@ -42,6 +45,7 @@ class RunEnd:
     lost: Mapping[str, int] = field(default_factory=dict)
     foreign: tuple[str, ...] = ()
     incidents: tuple[str, ...] = ()
+    goals: tuple[Mapping[str, Any], ...] = ()
 
     def to_metadata(self) -> dict[str, str]:
         """As texts, which is what a metadata record holds."""
@@ -56,15 +60,17 @@ class RunEnd:
         """
         values: dict[str, Any] = {}
         for each in fields(cls):
+            if each.name == "goals" and each.name not in record:
+                continue
             try:
                 values[each.name] = json.loads(record[each.name])
             except (KeyError, ValueError) as fault:
                 raise LogError(f"metadata {NAME!r}: {each.name} is missing or damaged") from fault
         for name, is_right in _RIGHT.items():
-            if not is_right(values[name]):
+            if name in values and not is_right(values[name]):
                 raise LogError(f"metadata {NAME!r}: {name} is {values[name]!r}")
-        for name in ("foreign", "incidents"):
-            values[name] = tuple(values[name])
+        for name in ("foreign", "incidents", "goals"):
+            values[name] = tuple(values.get(name, ()))
         return cls(**values)
 
 
@@ -75,6 +81,13 @@ def _is_duration(value: Any) -> bool:
 
 def _is_counts(value: Any) -> bool:
     return isinstance(value, dict) and all(type(n) is int and n >= 0 for n in value.values())
+
+
+def _are_goals(value: Any) -> bool:
+    names = {"kind", "state", "message", "began_s", "ended_s"}
+    return isinstance(value, list) and all(
+        isinstance(one, dict) and names <= one.keys() for one in value
+    )
 
 
 def _is_texts(value: Any) -> bool:
@@ -89,5 +102,6 @@ _RIGHT: dict[str, Callable[[Any], bool]] = {
     "lost": _is_counts,
     "foreign": _is_texts,
     "incidents": _is_texts,
+    "goals": _are_goals,
 }
 """What the values of a record must be; it may have been damaged or written by hand."""

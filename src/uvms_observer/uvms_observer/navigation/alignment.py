@@ -22,7 +22,7 @@ def aligned(
     config: NavigationConfig,
     start: Odometry | None = None,
 ) -> NavigationState:
-    """At rest at the configured position, with the measured attitude.
+    """At the configured position and velocity, with the measured attitude.
 
     With a `start`, its position and velocity, as uncertain as it says.
 
@@ -34,6 +34,9 @@ def aligned(
     state.quaternion[:] = quaternion
     P, R = state.covariance, quat_to_matrix(quaternion)
     state.position[:] = config.initial_position_m - R @ imu.body
+    if any(config.initial_velocity_m_s):  # else the IMU is at rest, whatever its noise says
+        swing = R @ np.cross(sample.angular_velocity, imu.body)
+        state.velocity[:] = config.initial_velocity_m_s - swing
     horizontal, vertical = config.initial_position_std_m, config.initial_depth_std_m
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2

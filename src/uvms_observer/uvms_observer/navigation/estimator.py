@@ -16,7 +16,7 @@ from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
-from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S
+from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
 from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import (
     INERTIAL_BIASES,
@@ -91,7 +91,10 @@ class Estimator:
         return odometry(self.time or 0, self.state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        self.state = aligned(sample, self._imu, self._config, self.start)
+        start, config = self.start, self._config
+        if start is None and config.start == "fixes":
+            start = lost(sample.stamp, np.array(config.initial_position_m))
+        self.state = aligned(sample, self._imu, config, start)
         for each in self._measurements.values():
             self.state = each.begin(self.state)
             for index, variance in each.initial_variance.items():

@@ -24,6 +24,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation import suspicion
 from uvms_observer.navigation.estimator import Estimator
+from uvms_observer.navigation.initialisation import lacking
 from uvms_observer.navigation.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
@@ -55,6 +56,8 @@ class NavigationFilter:
         self._next_trial = 0  # ns
         self._stamp = -1  # of the last step
         self._newest: dict[str, int] = {}  # stamp of the newest sample, by sensor
+        self._initialised = config.start == "given"
+        self._known_within = config.known_within_m, config.known_within_m_s
         self.rejected = 0
         self.late = 0
         self.corrected = 0
@@ -72,6 +75,7 @@ class NavigationFilter:
         sample.
         """
         self._estimator.start = estimate
+        self._initialised = True
 
     def step(
         self,
@@ -150,6 +154,14 @@ class NavigationFilter:
         self._stamp = stamp
         self._run(stamp, readings)
         return self._estimator.odometry()
+
+    def waits_for(self) -> str:
+        """What the filter still waits for before its estimate means anything; empty: nothing."""
+        if self._initialised:
+            return ""
+        lacks = lacking(self._estimator.state, *self._known_within)
+        self._initialised = not lacks
+        return lacks
 
     def health(self) -> dict[str, Health]:
         """How each sensor is doing at the last step."""

@@ -36,6 +36,29 @@ class NavigationConfig(PluginConfig, StartConfig):
         description="navigation filter: error_state_ekf (eq. (20)), that of an installed package,"
         " or a class as my_package.my_module:MyFilter",
     )
+    start: Literal["given", "fixes"] = Field(
+        "given",
+        description="where the filter begins: `given`, by the fields initial_*; `fixes`, anywhere,"
+        " until position and velocity have been measured, and nothing is published before that."
+        " The attitude is that of the first IMU sample in either case",
+    )
+    initial_velocity_m_s: tuple[float, float, float] = Field(
+        (0.0, 0.0, 0.0),
+        description="of the body origin over ground at the start, map_ned, m/s; start: given",
+    )
+    known_within_m: float = Field(
+        10.0,
+        gt=0.0,
+        le=1000.0,
+        description="with start: fixes, std of north, east and depth each, m, below which the"
+        " estimate is published: what a fix of a usual receiver or acoustic system gives",
+    )
+    known_within_m_s: float = Field(
+        0.5,
+        gt=0.0,
+        le=10.0,
+        description="and that of the velocity along each axis, m/s",
+    )
     initial_position_std_m: float = Field(
         0.01, gt=0.0, description="std of the initial north and east, m"
     )
@@ -43,7 +66,7 @@ class NavigationConfig(PluginConfig, StartConfig):
         100.0, gt=0.0, description="std of the initial depth before the first pressure sample, m"
     )
     initial_velocity_std_m_s: float = Field(
-        0.5, gt=0.0, description="std of the initial velocity about rest, m/s"
+        0.5, gt=0.0, description="std of the initial velocity, m/s"
     )
     gyro_noise_scale: float = Field(
         1.0, gt=0.0, le=1000.0, description="factor on the gyro noise of the vehicle file"
