@@ -174,8 +174,8 @@ def test_an_unstable_step_names_its_parameter(capsys):
 @pytest.mark.parametrize("command", ["run", "simulate"])
 def test_an_unknown_scenario_lists_the_choices(capsys, command):
     assert error_of(capsys, command, "hoover") == (
-        "unknown scenario 'hoover'; choose one of arm_swing, grasp, hover, manipulation, swell, or"
-        " a YAML file"
+        "unknown scenario 'hoover'; choose one of arm_swing, dive_and_work, grasp, hover,"
+        " manipulation, manipulation_marker, swell, or a YAML file"
     )
     assert error_of(capsys, command, "no.yaml") == "scenario file 'no.yaml' does not exist"
 

@@ -47,6 +47,10 @@ def window_for(vehicle: Vehicle, period: int) -> int:
     return int(min(max(SHARE_OF_HISTORY * Qos().depth // most, 1), MOST_PERIODS))
 
 
+_OF_ODOMETRY = (topics.TF.name, topics.STABILITY.name)
+"""What there is only of a known odometry, and is not waited for where that is late."""
+
+
 class Acknowledgement:
     """Publishes on `recorded`.
 
@@ -117,6 +121,8 @@ class Acknowledgement:
         message = self._gaps.decode(data)
         for sensor, newest in zip(message.sensors, message.newest, strict=True):
             self._late[topics.sampled_topic(sensor)] = newest
+            if sensor == topics.ODOMETRY.name:
+                self._late |= dict.fromkeys(_OF_ODOMETRY, newest)
         self._also_gaps(data)
 
     def _look(self) -> None:
@@ -158,7 +164,8 @@ class Acknowledgement:
     def _complete(self, stamp: int) -> bool:
         newest, before = self._newest, stamp - self._period
         return all(newest.get(name, -1) >= self._due_of(name, stamp) for name in self._plants) and (
-            not self._answered or all(newest.get(name, -1) >= before for name in self._answers)
+            not self._answered
+            or all(newest.get(name, -1) >= self._due_of(name, before) for name in self._answers)
         )
 
     def _due_of(self, name: str, stamp: int) -> int:
@@ -172,7 +179,9 @@ class Acknowledgement:
         }
         if self._answered:
             before = stamp - self._period
-            lacking |= {name for name in self._answers if newest.get(name, -1) < before}
+            lacking |= {
+                name for name in self._answers if newest.get(name, -1) < self._due_of(name, before)
+            }
         return lacking
 
 

@@ -97,7 +97,7 @@ class Conductor(Node):
         self.result_status: int | None = None  # action_msgs/msg/GoalStatus
         self.goal_handle: Any = None
         self.agenda = Agenda(None)
-        self._clients: dict[str, Any] = {}  # of actions, by name
+        self._goal_clients: dict[str, Any] = {}  # of actions, by name
         self._sent: Any = None  # the answer to a further goal that has been sent
         self.create_subscription(
             message_class(topics.DIAGNOSTICS),
@@ -159,7 +159,8 @@ class Conductor(Node):
             lambda: f"the first thruster_command; nothing yet from {', '.join(self._silent())}",
         )
         self.agenda = Agenda(goal)
-        if (first := self.agenda.due) is not None:
+        first = self.agenda.due
+        if first is not None and topics.ODOMETRY.name in self.recorder.newest:
             self.send_goal(spinner, first)
             self.agenda.begin(self.stamp)
         self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
@@ -304,10 +305,13 @@ class Conductor(Node):
             self.agenda.end(self.stamp, self.goal_state(), self.result.message)
 
     def go_on(self) -> None:
-        """Where a goal has succeeded, ask for the next one; time goes on meanwhile."""
+        """Where a goal has succeeded, ask for the next one; time goes on meanwhile.
+
+        The first one is asked for here where navigation did not know the place at the start.
+        """
         self.hear()
         goal = self.agenda.due
-        if goal is None:
+        if goal is None or topics.REFERENCE.name not in self.recorder.newest:
             return
         if self._sent is None:
             self._send(goal)
@@ -328,9 +332,9 @@ class Conductor(Node):
         """The client of a goal's action, and the action's class."""
         action = topics.action_of(goal)
         cls = action_class(action)
-        if action.name not in self._clients:
-            self._clients[action.name] = ActionClient(self, cls, action.name)
-        return self._clients[action.name], cls
+        if action.name not in self._goal_clients:
+            self._goal_clients[action.name] = ActionClient(self, cls, action.name)
+        return self._goal_clients[action.name], cls
 
     def _take_answer(self, handle: Any) -> None:
         if not handle.accepted:

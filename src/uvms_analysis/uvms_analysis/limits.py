@@ -1,6 +1,8 @@
 """The limits within which a run must stay to count as completed; docs/logs.md explains them."""
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -63,8 +65,13 @@ def is_controlled(log: RunLog) -> bool:
 
 
 def goal_end_s(run: Analysis) -> float:
-    """When the run's goal would have ended, s; 0 where it does not say how long it takes."""
+    """When the run's goal would have ended, s; 0 where it does not say how long it takes.
+
+    Of several goals in turn: the least time that they take.
+    """
     try:
+        if several := run.log.configuration().get("goals"):
+            return sum(map(_least_s, several))
         if run.path is not None:
             return run.path_start_s + float(run.path.times[-1])
         goal = run.log.configuration()["goal"]
@@ -74,6 +81,16 @@ def goal_end_s(run: Analysis) -> float:
         return float(goal["joints"]["times_s"][-1])
     except (LogError, KeyError, TypeError, IndexError, ValueError):
         return 0.0
+
+
+def _least_s(goal: Mapping[str, Any]) -> float:
+    """How long a goal of a list takes at least, s: what it says itself."""
+    if pose := goal.get("pose"):
+        return float((pose.get("duration_s") or 0.0) + pose["hold_s"])
+    if joints := goal.get("joints"):
+        return float(joints["times_s"][-1])
+    phases = (goal.get("path") or {}).get("phases") or ()
+    return float(sum(phase["duration_s"] for phase in phases))
 
 
 def attitude(run: Analysis) -> str:

@@ -139,10 +139,11 @@ def _goal(log: RunLog, run: Analysis) -> Iterator[str]:
     end = _end(log)
     if end is None or end.goal in ("none", "succeeded"):
         return
+    done = sum(goal["state"] == "succeeded" for goal in end.goals)
+    which = "the planner's goal"
     if len(end.goals) > 1:
-        done = sum(goal["state"] == "succeeded" for goal in end.goals)
-        yield f"the run's goals: {done} of {len(end.goals)} succeeded, then {end.goal}"
-    elif end.goal != "running":
-        yield f"the planner's goal was {end.goal}"
+        which = f"of {len(end.goals)} goals {done} succeeded, and then one"
+    if end.goal != "running":
+        yield f"{which} was {end.goal}"
     elif limits.goal_end_s(run) < end.asked_s and not end.stopped_by:
-        yield "the planner's goal was still running at the end"
+        yield f"{which} was still running at the end"

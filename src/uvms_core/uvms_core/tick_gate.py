@@ -97,6 +97,7 @@ class TickGate:
         self._last = -1
         self._begun = False
         self._excuses = False
+        self._idle: set[int] = set()  # ticks that are safe ones in any case, and wait for nothing
 
     def reset(self) -> None:
         """Forget all inputs and open ticks; the counts go on."""
@@ -131,6 +132,10 @@ class TickGate:
             elif isinstance(item, Delayed) and self._lockstep:  # else the newest is taken anyway
                 item.skip(stamp, last)
                 self._excuses = True
+            elif isinstance(item, Same):  # whoever makes it does not know it yet
+                item.excuse(stamp)
+                self._excuses = True
+                self._idle.add(stamp)
         if self._trigger in newest and newest[self._trigger] < stamp and stamp % self._every == 0:
             self._is_new(stamp)
         return self._release()
@@ -207,8 +212,9 @@ class TickGate:
 
     def _release(self) -> list[Tick]:
         released = []
-        while self._open and self._complete(self._open[0]):
+        while self._open and (self._open[0] in self._idle or self._complete(self._open[0])):
             stamp = self._open.popleft()
+            self._idle.discard(stamp)
             self._broken = False
             missing = self._missing(stamp) if self._excuses else ()
             inputs = {name: item.take(stamp) for name, item in self._inputs.items()}

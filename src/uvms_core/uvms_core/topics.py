@@ -137,7 +137,8 @@ the place of the observer or the allocator may leave them out (`tick_gate.Compan
 SENSOR_GAPS = Topic(
     f"{SENSORS}gaps", "uvms_msgs/msg/SensorGaps", signals.SensorGaps, BODY_FRAME, is_occasional=True
 )
-"""Of the plant: samples that are missing or late. Nobody needs it who has a real vehicle."""
+"""Of the plant: samples that are missing or late; of navigation: its odometry, as long as it does
+not know where it is. Nobody needs it who has a real vehicle."""
 END_EFFECTOR_TARGET = Topic(
     "end_effector_target",
     "geometry_msgs/msg/PointStamped",
@@ -154,7 +155,9 @@ ENCODERS = "encoders"
 
 
 def sampled_topic(sensor: str) -> str:
-    """Name of the topic with the samples of a sensor of the vehicle file."""
+    """Name of the topic with the samples of a sensor of the vehicle file, or of navigation."""
+    if sensor == ODOMETRY.name:
+        return ODOMETRY.name
     return JOINT_STATES.name if sensor == ENCODERS else f"{SENSORS}{sensor}"
 
 

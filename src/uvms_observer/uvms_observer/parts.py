@@ -10,7 +10,7 @@ from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create, prepared
 from uvms_core.sensors import INERTIAL
-from uvms_core.signals import DisturbanceBudget, Odometry, Wrench
+from uvms_core.signals import NOTHING_YET, DisturbanceBudget, Odometry, SensorGaps, Wrench
 from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle
@@ -74,6 +74,8 @@ class NavigationPart(Part):
         waits_for = getattr(self.filter, "waits_for", None)
         self._waits_for = waits_for() if waits_for is not None else ""
         if self._waits_for:
+            names = (topics.ODOMETRY.name,)
+            yield topics.SENSOR_GAPS, SensorGaps(tick.stamp, names, (NOTHING_YET,))
             return
         self.estimate = odometry
         yield topics.ODOMETRY, odometry

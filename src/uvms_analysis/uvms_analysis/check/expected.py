@@ -61,9 +61,11 @@ def rhythms(contents: Contents) -> Rhythms | None:
 
 
 def _with_gaps(log: RunLog) -> Iterator[Topic]:
-    """Topics of the sensors whose samples did not all come when they were due, as the plant says.
+    """Topics that did not all come when they were due, as somebody says.
 
-    What was sent and not recorded is found out all the same.
+    Samples of sensors, of which the plant says so; the odometry, and what follows from it, where
+    navigation does not know yet where the vehicle is. What was sent and not recorded is found out
+    all the same.
     """
     gaps = log.signals(topics.SENSOR_GAPS) if log.has(topics.SENSOR_GAPS) else []
     names = {name for each in gaps for name in each.sensors}
@@ -72,6 +74,8 @@ def _with_gaps(log: RunLog) -> Iterator[Topic]:
             yield sensor.topic
     if topics.ENCODERS in names:
         yield topics.JOINT_STATES
+    if topics.ODOMETRY.name in names:
+        yield from (topics.ODOMETRY, topics.TF, topics.REFERENCE, topics.STABILITY)
 
 
 def _period(config: Mapping[str, Any], path: str) -> int:

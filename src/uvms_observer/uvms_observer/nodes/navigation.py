@@ -1,6 +1,7 @@
 """Node `navigation`: the extended Kalman filter on the sensors' topics."""
 
 from pathlib import Path
+from typing import Any
 
 from pydantic import Field
 
@@ -32,6 +33,10 @@ class NavigationNode(PartNode):
     role = topics.NAVIGATION
     configurations = (NavigationConfig, CheckpointConfig)
     part: NavigationPart | TruthPart
+
+    def __init__(self, **options: Any) -> None:
+        super().__init__(**options)
+        self.offer(topics.SENSOR_GAPS)
 
     def make_part(self) -> NavigationPart | TruthPart:
         """The navigation filter that the parameters name, or the truth."""

@@ -64,6 +64,7 @@ class MotionPlannerNode(PartNode):
         self._planning: _Planning | None = None
         self._stamp = 0
         self._accepted = 0
+        self._ready = Future(executor=self.executor)  # once there has been an odometry
         self._servers = [self._serve(action) for action in topics.ACTIONS]
         self._target: ToolTarget | None = None  # the newest, that no tick has taken
         self.listen(topics.END_EFFECTOR_TARGET, self._take_target)
@@ -79,6 +80,8 @@ class MotionPlannerNode(PartNode):
         self._stamp, plan = tick.stamp, self.part.plan
         if plan is None:
             return
+        if not self._ready.done():
+            self._ready.set_result(None)
         self._answer_goal(plan)
         self.report(tick.stamp, step_ms=self.step_ms, **plan.diagnostics())
 
@@ -120,6 +123,9 @@ class MotionPlannerNode(PartNode):
         )
 
     async def _admit_goal(self, action: Action, goal: Any) -> GoalResponse:
+        if not self._ready.done():
+            self.get_logger().info("a goal waits for the first odometry")
+            await self._ready
         if self._planning is not None and goal == self._planning.goal:
             return await self._refuse_repetition(self._planning)
         try:
