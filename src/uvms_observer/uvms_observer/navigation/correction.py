@@ -13,7 +13,7 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 from uvms_observer.navigation.arrays import transposed
-from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.state import FURTHER, SIZE, NavigationState
 
 
 @exact_kernel
@@ -21,7 +21,7 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
     """Correct the state in place, unless the residual's distance is beyond the gate.
 
     Args:
-        H: (m, 20) derivative of the measurement by the error state.
+        H: (m, SIZE) derivative of the measurement by the error state.
         residual: (m,) measured minus expected.
         N: (m, m) covariance of the measurement's noise.
         gate: largest d^2 that is accepted.
@@ -70,7 +70,7 @@ def _add_error(state: NavigationState, e: Array) -> None:
         state.gyro_bias[i] += e[9 + i]
         state.accelerometer_bias[i] += e[12 + i]
         state.compass_bias[i] += e[15 + i]
-    for i in range(2):
-        state.instrument_bias[i] += e[18 + i]
+    for i in range(SIZE - FURTHER):
+        state.further[i] += e[FURTHER + i]
     for i in range(4):
         state.quaternion[i] = turned[i] / length
