@@ -17,6 +17,7 @@ from uvms_observer.navigation.state import (
     ACCELEROMETER_BIAS,
     ATTITUDE,
     COMPASS_BIAS,
+    DVL_MISALIGNMENT,
     FURTHER,
     GYRO_BIAS,
     POSITION,
@@ -122,10 +123,21 @@ def propagated(
     return mean._replace(covariance=covariance)
 
 
-def corrected(state: NavigationState, H: Array, residual: Array, N: Array) -> NavigationState:
+def conditional(P: Array) -> Array:
+    """Covariance (SIZE, SIZE) of the other states where the DVL's misalignment is known."""
+    m = slice(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3)
+    known = P - P[:, m] @ np.linalg.inv(P[m, m]) @ P[m]
+    known[m], known[:, m] = 0.0, 0.0
+    return known
+
+
+def corrected(
+    state: NavigationState, H: Array, residual: Array, N: Array, is_fix: bool
+) -> NavigationState:
     """State and covariance after one measurement, Joseph form."""
     P = state.covariance
-    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + N)
+    known = P if is_fix else conditional(P)
+    K = known @ H.T @ np.linalg.inv(H @ known @ H.T + N)
     left = np.eye(SIZE) - K @ H
     covariance = left @ P @ left.T + K @ N @ K.T
     return plus(state, K @ residual)._replace(covariance=covariance)

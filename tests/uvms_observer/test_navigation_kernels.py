@@ -99,12 +99,12 @@ def test_derivative_of_the_gyrocompass_residual(seed):
 
 
 @settings(max_examples=25, deadline=None)
-@given(seed=seeds)
-def test_correction_equals_the_numpy_reference(seed):
+@given(seed=seeds, is_fix=st.booleans())
+def test_correction_equals_the_numpy_reference(seed, is_fix):
     state, rng = random_state(seed), np.random.default_rng(seed)
     H, residual = rng.standard_normal((3, SIZE)), 0.01 * rng.standard_normal(3)
-    expected = numpy_reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]))
-    correct(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), OPEN)
+    expected = numpy_reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), is_fix)
+    correct(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), OPEN, is_fix)
     for ours, theirs in zip(state, expected, strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-11)
 

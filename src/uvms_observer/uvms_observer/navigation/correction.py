@@ -3,7 +3,7 @@
     S = H P H^T + N,  d^2 = r^T S^-1 r,  K = P H^T S^-1,
     e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
 
-The Joseph form keeps P positive semidefinite under rounding. The tests compare it
+The Joseph form holds for any gain and keeps P positive semidefinite under rounding. The tests compare it
 with the same in plain numpy.
 """
 
@@ -13,11 +13,21 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 from uvms_observer.navigation.arrays import transposed
-from uvms_observer.navigation.state import FURTHER, SIZE, NavigationState
+from uvms_observer.navigation.state import DVL_MISALIGNMENT, FURTHER, SIZE, NavigationState
+
+TINY = 1e-18
+"""rad^2, added to the variance of a misalignment that may be 0."""
 
 
 @exact_kernel
-def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: float) -> float:
+def correct(
+    state: NavigationState,
+    H: Array,
+    residual: Array,
+    N: Array,
+    gate: float,
+    is_fix: bool = False,
+) -> float:
     """Correct the state in place, unless the residual's distance is beyond the gate.
 
     Args:
@@ -25,6 +35,9 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
         residual: (m,) measured minus expected.
         N: (m, m) covariance of the measurement's noise.
         gate: largest d^2 that is accepted.
+        is_fix: whether a position is measured, from which the DVL's misalignment can be told.
+            Other samples are weighed as if that were known, and the covariance accounts for its not
+            being so: through accelerations they would estimate it, worse than mounting does.
 
     Returns:
         d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed.
@@ -38,10 +51,70 @@ def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: f
     distance = residual.dot(S_inverse @ residual)
     if not distance <= gate:
         return distance
-    K = PHt @ S_inverse
+    K = PHt @ S_inverse if is_fix else _gain_of_known_mounting(state.covariance, PHt, H, N)
     _correct_covariance(state.covariance, K, H, N)
     _add_error(state, K @ residual)
     return distance
+
+
+@exact_inner
+def _gain_of_known_mounting(P: Array, PHt: Array, H: Array, N: Array) -> Array:
+    """Gain (SIZE, m) by the covariance of all else, given the DVL's misalignment.
+
+    P_x - G P_mx with G = P_xm P_mm^-1; the misalignment itself is left as it is.
+    """
+    m = N.shape[0]
+    within = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            within[i, j] = P[DVL_MISALIGNMENT + i, DVL_MISALIGNMENT + j]
+        within[i, i] += TINY
+    inverse = np.linalg.inv(within)
+    known = np.zeros((SIZE, m))
+    told = np.zeros((3, m))  # P_mm^-1 (P H^T)_m
+    for i in range(3):
+        for j in range(m):
+            for k in range(3):
+                told[i, j] += inverse[i, k] * PHt[DVL_MISALIGNMENT + k, j]
+    for i in range(SIZE):
+        if not DVL_MISALIGNMENT <= i < DVL_MISALIGNMENT + 3:
+            for j in range(m):
+                known[i, j] = PHt[i, j]
+                for k in range(3):
+                    known[i, j] -= P[i, DVL_MISALIGNMENT + k] * told[k, j]
+    S = H @ known
+    for i in range(m):
+        for j in range(m):
+            S[i, j] += N[i, j]
+    return known @ np.linalg.inv(S)
+
+
+@exact_inner
+def linearization_point(
+    state: NavigationState, H: Array, residual: Array, N: Array
+) -> tuple[NavigationState, Array]:
+    """The state (+) K r, with arrays of its own, and K r: where an iterated filter linearizes.
+
+    Jazwinski, *Stochastic Processes and Filtering Theory* (1970), sec. 8.3.
+    """
+    PHt = state.covariance @ transposed(H)
+    S = H @ PHt
+    for i in range(N.shape[0]):
+        for j in range(N.shape[0]):
+            S[i, j] += N[i, j]
+    e = PHt @ (np.linalg.inv(S) @ residual)
+    point = NavigationState(
+        state.position.copy(),
+        state.velocity.copy(),
+        state.quaternion.copy(),
+        state.gyro_bias.copy(),
+        state.accelerometer_bias.copy(),
+        state.compass_bias.copy(),
+        state.further.copy(),
+        state.covariance,
+    )
+    _add_error(point, e)
+    return point, e
 
 
 @exact_inner

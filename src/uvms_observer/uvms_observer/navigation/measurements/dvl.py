@@ -8,7 +8,7 @@ from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
-from uvms_observer.navigation.correction import correct
+from uvms_observer.navigation.correction import correct, linearization_point
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
@@ -24,6 +24,9 @@ from uvms_observer.navigation.state import (
 
 WATER_NOISE_M_S = 0.03
 """Std of the water's own motion in the layer that a sample looks into, m/s: waves, turbulence."""
+
+LOOSE = 5.0
+"""Velocity's std in those of the noise from which on a sample is linearized twice."""
 
 
 class DvlVelocity(Measurement):
@@ -105,6 +108,15 @@ def _motion(R: Array, over: Array, lever: Array, state: NavigationState, rate: A
     return motion
 
 
+@exact_inner
+def _is_loose(P: Array, variance: float) -> bool:
+    """Whether a sample may change the velocity so much that it must be linearized after that.
+
+    How misalignment and scale show in a sample is a matter of the velocity.
+    """
+    return P[3, 3] + P[4, 4] + P[5, 5] > 3.0 * LOOSE**2 * variance
+
+
 @exact_kernel
 def correct_velocity(
     fields: Fields,
@@ -125,4 +137,11 @@ def correct_velocity(
     for i in range(3):
         for k in range(3):
             N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
+    if _is_loose(state.covariance, variance):
+        point, e = linearization_point(state, H, residual, N)
+        residual, H = velocity(point, lever, rate, in_water)
+        subtract_from(measured, residual)
+        moved = H @ e
+        for i in range(3):
+            residual[i] += moved[i]
     return correct(state, H, residual, N, gate)
