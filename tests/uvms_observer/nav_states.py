@@ -5,7 +5,7 @@ from scipy.spatial.transform import Rotation
 
 from uvms_dynamics.kernels.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
 from uvms_observer.navigation.propagation import ProcessNoise
-from uvms_observer.navigation.state import FURTHER, SIZE, NavigationState
+from uvms_observer.navigation.state import FURTHER, SIZE, WIDEST, NavigationState
 
 NOISE = ProcessNoise(
     1e-6, 1e-4, np.linspace(1e-6, 9e-6, SIZE - 9), 1.0 / np.linspace(100.0, 900.0, SIZE - 9)
@@ -27,6 +27,7 @@ def random_state(seed):
         0.01 * rng.standard_normal(3),
         0.01 * rng.standard_normal(SIZE - FURTHER),
         root @ root.T,
+        np.zeros((3, WIDEST)),
     )
 
 

@@ -41,6 +41,7 @@ def plus(state: NavigationState, e: Array) -> NavigationState:
         state.compass_bias + e[COMPASS_BIAS],
         state.further + e[FURTHER:],
         state.covariance,
+        state.innovation,
     )
 
 
@@ -73,6 +74,7 @@ def propagated_mean(
         phi[6:9] * state.compass_bias,
         phi[9:] * state.further,
         state.covariance,
+        state.innovation,
     )
 
 

@@ -3,8 +3,8 @@
     S = H P H^T + N,  d^2 = r^T S^-1 r,  K = P H^T S^-1,
     e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
 
-The Joseph form holds for any gain and keeps P positive semidefinite under rounding. The tests compare it
-with the same in plain numpy.
+The Joseph form holds for any gain and keeps P positive semidefinite under rounding. The tests
+compare it with the same in plain numpy.
 """
 
 import numpy as np
@@ -40,13 +40,18 @@ def correct(
             being so: through accelerations they would estimate it, worse than mounting does.
 
     Returns:
-        d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed.
+        d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed but
+        the innovation that the state keeps.
     """
     PHt = state.covariance @ transposed(H)
     S = H @ PHt
     for i in range(N.shape[0]):
         for j in range(N.shape[0]):
             S[i, j] += N[i, j]
+    for i in range(N.shape[0]):
+        state.innovation[0, i] = residual[i]
+        state.innovation[1, i] = np.sqrt(N[i, i])
+        state.innovation[2, i] = np.sqrt(S[i, i])
     S_inverse = np.linalg.inv(S)
     distance = residual.dot(S_inverse @ residual)
     if not distance <= gate:
@@ -112,6 +117,7 @@ def linearization_point(
         state.compass_bias.copy(),
         state.further.copy(),
         state.covariance,
+        state.innovation,
     )
     _add_error(point, e)
     return point, e

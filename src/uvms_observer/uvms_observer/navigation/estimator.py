@@ -39,16 +39,21 @@ class Estimator:
         imu: the inertial unit.
         measurements: of all sensors, by name; the gyrocompass of the inertial unit is one of them.
         config: start and gates.
+        periods: between two samples of each, s.
     """
 
     def __init__(
-        self, imu: Installation, measurements: Mapping[str, Measurement], config: NavigationConfig
+        self,
+        imu: Installation,
+        measurements: Mapping[str, Measurement],
+        config: NavigationConfig,
+        periods: Mapping[str, float],
     ) -> None:
         self._imu = imu
         self._measurements = measurements
         self._config = config
         self._gates = {
-            name: InnovationGate(each.size, config.gate_probability)
+            name: InnovationGate(each.size, config.gate_probability, periods[name])
             for name, each in measurements.items()
         }
         self.tallies = dict.fromkeys(measurements, Tally())
@@ -156,4 +161,6 @@ class Estimator:
         name = reading.name
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._rate)
-        self.tallies[name] = self._gates[name].apply(self.tallies[name], reading.stamp, correct)
+        self.tallies[name] = self._gates[name].apply(
+            self.tallies[name], reading.stamp, correct, self.state.innovation
+        )

@@ -48,7 +48,9 @@ class NavigationFilter:
     def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
-        self._estimator = Estimator(imu, self._instruments.measurements, config)
+        self._estimator = Estimator(
+            imu, self._instruments.measurements, config, self._instruments.periods
+        )
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
         self._steps: deque[Step] = deque()

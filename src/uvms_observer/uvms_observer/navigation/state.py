@@ -38,6 +38,8 @@ DEPTH_BIAS = DVL_SCALE + 1
 DVL_MISALIGNMENT = DEPTH_BIAS + 1  # of three
 CURRENT = DVL_MISALIGNMENT + 3  # of two
 SIZE = CURRENT + 2
+WIDEST = 6
+"""Largest dimension of a measurement."""
 
 
 class NavigationState(NamedTuple):
@@ -56,6 +58,8 @@ class NavigationState(NamedTuple):
     further: Array  # (SIZE - FURTHER,) as in the error state: scale error of the DVL; bias of the
     # depth, m; misalignment of the DVL, rad, a turn about the body axes; current, m/s, map_ned
     covariance: Array  # (SIZE, SIZE) of the error state
+    innovation: Array  # (3, WIDEST) of the last measurement: residual, std of its noise, its own
+    # std; zeros beyond its size
 
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""
@@ -77,4 +81,5 @@ def empty_state() -> NavigationState:
         np.zeros(3),
         np.zeros(SIZE - FURTHER),
         np.zeros((SIZE, SIZE)),
+        np.zeros((3, WIDEST)),
     )
