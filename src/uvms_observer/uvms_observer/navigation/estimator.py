@@ -8,6 +8,7 @@ import numpy as np
 
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
+from uvms_observer.navigation import undecided
 from uvms_observer.navigation.alignment import aligned
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
@@ -25,6 +26,7 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
+from uvms_observer.navigation.undecided import Doubt
 from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
 
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
@@ -57,6 +59,7 @@ class Estimator:
             for name, each in measurements.items()
         }
         self.tallies = dict.fromkeys(measurements, Tally())
+        self._doubts: dict[str, Doubt] = {}  # of the sensors whose last sample was rejected
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
@@ -71,6 +74,7 @@ class Estimator:
         other = copy(self)
         other.state = self.state.copied()
         other.tallies = dict(self.tallies)
+        other._doubts = dict(self._doubts)
         return other
 
     def take(self, reading: Reading) -> None:
@@ -92,8 +96,12 @@ class Estimator:
 
     def odometry(self) -> Odometry:
         """The estimate at the body origin, at the present time."""
-        imu = self._imu
-        return odometry(self.time or 0, self.state, imu.body, self._rate, imu.rate_variance)
+        imu, state = self._imu, self.state
+        if self._doubts:
+            open_ones = [(each, self.tallies[name]) for name, each in self._doubts.items()]
+            wider = undecided.widened(state.covariance, open_ones, self.time or 0)
+            state = state if wider is None else state._replace(covariance=wider)
+        return odometry(self.time or 0, state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
         self.state = aligned(sample, self._imu, self._config, self.start)
@@ -164,3 +172,9 @@ class Estimator:
         self.tallies[name] = self._gates[name].apply(
             self.tallies[name], reading.stamp, correct, self.state.innovation
         )
+        if not self.tallies[name].row:
+            self._doubts.pop(name, None)
+            return
+        other, now = undecided.believed(self.state), (self.tallies[name], self._doubts.get(name))
+        update(other, reading.sample, self._rate, np.inf)
+        self._doubts[name] = undecided.doubt(self.state, other, *now, reading.stamp)
