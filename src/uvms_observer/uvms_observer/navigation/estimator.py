@@ -140,10 +140,10 @@ class Estimator:
             unknown = gap_spread(to_seconds(begin - self._inertial), gone, imu.gravity)
             spread(tuple(self.state), *unknown, dt)
 
-    def doubt_imu(self) -> None:
-        """Take the inertial biases to be unknown from now on."""
+    def doubt_imu(self, times: float = 1.0) -> None:
+        """Take the inertial biases to be unknown from now on, by so many times the usual fault."""
         P = self.state.covariance
-        P[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(self._imu.faulty_bias_variance)
+        P[INERTIAL_BIASES, INERTIAL_BIASES] += times**2 * np.diag(self._imu.faulty_bias_variance)
 
     def doubt_velocity(self) -> None:
         """Take the velocity to be unknown now."""

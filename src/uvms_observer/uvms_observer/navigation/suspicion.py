@@ -15,6 +15,7 @@ Multiple hypotheses: Bar-Shalom, Li and Kirubarajan (2001), sec. 11.6.
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from uvms_core.signals import to_nanoseconds
 from uvms_observer.navigation.estimator import Estimator
@@ -38,6 +39,10 @@ IMPOSSIBLE = 1.0 - 1e-8
 BIASED = 6.0
 """Standard deviations that the running mean of residuals is off zero: those of a right filter are
 white, whatever their size."""
+BROKEN = 10.0
+"""Times the biases that a fault of an inertial unit usually leaves: of a worse fault."""
+NEXT = 4
+"""Of the begins, the latest ones, at which such a fault is looked for: it shows at once."""
 LIKELY = 0.999
 """Share of right explanations whose residuals are as small as those of the trial must be."""
 MISSED = 0.01
@@ -100,7 +105,12 @@ def _explanations(steps: Sequence[Step], suspect: Suspect) -> list[tuple[int, Do
         begin = max(0, _last_before(steps, since))
         return [(begin, Estimator.doubt_velocity), (begin, Estimator.doubt_place)]
     begins = {_last_before(steps, used - before) for before in BEFORE} - {-1}
-    return [(begin, Estimator.doubt_imu) for begin in sorted(begins, reverse=True)]
+    latest = sorted(begins, reverse=True)
+    broken = partial(Estimator.doubt_imu, times=BROKEN)
+    return [
+        *((begin, Estimator.doubt_imu) for begin in latest),
+        *((begin, broken) for begin in latest[:NEXT]),
+    ]
 
 
 def _last_before(steps: Sequence[Step], time: int) -> int:
