@@ -13,7 +13,7 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
 from uvms_observer.navigation.arrays import transposed
-from uvms_observer.navigation.state import DVL_MISALIGNMENT, FURTHER, SIZE, NavigationState
+from uvms_observer.navigation.state import DVL_MISALIGNMENT, FURTHER, SIZE, WIDEST, NavigationState
 
 TINY = 1e-18
 """rad^2, added to the variance of a misalignment that may be 0."""
@@ -48,6 +48,9 @@ def correct(
     for i in range(N.shape[0]):
         for j in range(N.shape[0]):
             S[i, j] += N[i, j]
+    for i in range(N.shape[0], WIDEST):
+        for j in range(3):
+            state.innovation[j, i] = 0.0
     for i in range(N.shape[0]):
         state.innovation[0, i] = residual[i]
         state.innovation[1, i] = np.sqrt(N[i, i])
