@@ -11,9 +11,11 @@ from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
 from uvms_observer.navigation import undecided
 from uvms_observer.navigation.alignment import aligned
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
-from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
+from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
+from uvms_observer.navigation.innovation_gate import InnovationGate, Tally, accepted
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.imu import Gyrocompass
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
@@ -52,6 +54,8 @@ class Estimator:
         periods: Mapping[str, float],
     ) -> None:
         self._imu = imu
+        compass = measurements[INERTIAL.name]
+        self._compass = compass if type(compass) is Gyrocompass else None
         self._measurements = measurements
         self._config = config
         self._gates = {
@@ -84,8 +88,9 @@ class Estimator:
             if inertial:
                 self._align(reading.sample)
         elif inertial:
-            self._carry(reading.sample)
-            self._correct(reading)
+            if not self._take_at_once(reading):
+                self._carry(reading.sample)
+                self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
             self._correct(reading)
@@ -112,9 +117,39 @@ class Estimator:
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
         self._memory = remember(self._rate, self._force)
 
+    def _take_at_once(self, reading: Reading) -> bool:
+        """Carry and correct in the usual case; False, and nothing done, where it is another."""
+        tally, compass, imu = self.tallies[reading.name], self._compass, self._imu
+        gone = to_seconds(reading.stamp - self._inertial)
+        if compass is None or tally.row or self._memory.row or gone > GAP * imu.period:
+            return False
+        sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
+        rate_limit, force_limit = self._screen.limits(gone)
+        rate, force = sample.angular_velocity, sample.linear_acceleration
+        distance, mean = take_inertial(
+            tuple(self.state),
+            *(self._rate, rate, rate_limit),
+            *(self._force, force, force_limit),
+            to_seconds(reading.stamp - time),
+            imu.gravity,
+            *imu.process,
+            *(sample.quaternion, compass.variance, gate.limit, tally.mean, gate.keep),
+        )
+        if distance == UNUSUAL:
+            return False
+        self.time, self._inertial = max(time, reading.stamp), reading.stamp
+        self._rate, self._force = rate, force
+        if distance <= gate.limit:
+            self.tallies[reading.name] = accepted(tally, reading.stamp, distance, mean)
+        else:
+            self._reject(reading, gate.rejected(tally, reading.stamp, self.state.innovation))
+        return True
+
     def _carry(self, sample: ImuSample) -> None:
         """With the readings at both ends of the interval: second order in its length."""
         dt = to_seconds(sample.stamp - self._inertial)
+        if not self._memory.row:
+            self._memory = remember(self._rate, self._force, self._memory.held)
         screened, self._memory = self._screen.judge(
             self._memory, sample.angular_velocity, sample.linear_acceleration, dt
         )
@@ -169,12 +204,18 @@ class Estimator:
         name = reading.name
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._rate)
-        self.tallies[name] = self._gates[name].apply(
+        tally = self._gates[name].apply(
             self.tallies[name], reading.stamp, correct, self.state.innovation
         )
-        if not self.tallies[name].row:
+        if tally.row:
+            self._reject(reading, tally)
+        else:
+            self.tallies[name] = tally
             self._doubts.pop(name, None)
-            return
-        other, now = undecided.believed(self.state), (self.tallies[name], self._doubts.get(name))
-        update(other, reading.sample, self._rate, np.inf)
-        self._doubts[name] = undecided.doubt(self.state, other, *now, reading.stamp)
+
+    def _reject(self, reading: Reading, tally: Tally) -> None:
+        """Keep the tally of a sample that is not used, and what it would have changed."""
+        name, other = reading.name, undecided.believed(self.state)
+        self._measurements[name].correct(other, reading.sample, self._rate, np.inf)
+        before, self.tallies[name] = self._doubts.get(name), tally
+        self._doubts[name] = undecided.doubt(self.state, other, tally, before, reading.stamp)

@@ -89,8 +89,8 @@ class InnovationGate:
         self._readmission = quantile(size, READMITTED)
         # a sample less the running mean, which has a share LEVEL / (2 - LEVEL) of its variance
         self._jump = quantile(size, JUMP) * (1.0 + LEVEL / (2.0 - LEVEL))
-        self._keep = 1.0 - 1.0 / max(FEW, WINDOW_S / period_s)
-        self._weight = (1.0 - self._keep**2) ** 0.5
+        self.keep = 1.0 - 1.0 / max(FEW, WINDOW_S / period_s)
+        self._weight = (1.0 - self.keep**2) ** 0.5
 
     def apply(
         self, tally: Tally, stamp: int, correct: Callable[[float], float], innovation: Array
@@ -110,9 +110,14 @@ class InnovationGate:
             limit = self._readmission if self._may_come_back(away, innovation) else -1.0
         distance = correct(limit)
         if distance <= limit:
-            mean = self._keep * tally.mean + self._weight * innovation[0] / _or_one(innovation[2])
-            total = tally.distance + distance
-            return Tally(tally.accepted + 1, tally.gated, 0, None, stamp, total, mean)
+            mean = self.keep * tally.mean + self._weight * innovation[0] / _or_one(innovation[2])
+            return accepted(tally, stamp, distance, mean)
+        return self.rejected(tally, stamp, innovation, away)
+
+    def rejected(
+        self, tally: Tally, stamp: int, innovation: Array, away: Away | None = None
+    ) -> Tally:
+        """The tally after a sample that was not used; `away` as it is after it."""
         if tally.row == 0:
             away = self._jumped(innovation)
         since = tally.since if tally.row else stamp
@@ -138,6 +143,11 @@ class InnovationGate:
 
     def _squared(self, change: Array, innovation: Array) -> float:
         return float(np.square(change / innovation[1, : self._size]).sum())
+
+
+def accepted(tally: Tally, stamp: int, distance: float, mean: Array) -> Tally:
+    """The tally after a sample that was used, of this distance, and the mean with it."""
+    return Tally(tally.accepted + 1, tally.gated, 0, None, stamp, tally.distance + distance, mean)
 
 
 def _or_one(std: Array) -> Array:

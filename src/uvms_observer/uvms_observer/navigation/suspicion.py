@@ -76,10 +76,11 @@ def suspects(steps: Sequence[Step], estimator: Estimator, stamp: int) -> list[Su
 
 def _does_not_fit(name: str, steps: Sequence[Step], estimator: Estimator, stamp: int) -> int | None:
     """Since when (ns) the samples of a sensor that is used are too far off together."""
-    index = _last_before(steps, stamp - WINDOW)
+    last = estimator.tallies[name]
+    index = _last_before(steps, stamp - WINDOW) if last.accepted >= FEW else -1
     if index < 0 or steps[index].begin < 0:
         return None
-    first, last = steps[index].before.tallies[name], estimator.tallies[name]
+    first = steps[index].before.tallies[name]
     taken = last.accepted - first.accepted
     if taken < FEW:
         return None
@@ -115,7 +116,7 @@ def _explanations(steps: Sequence[Step], suspect: Suspect) -> list[tuple[int, Do
 
 def _last_before(steps: Sequence[Step], time: int) -> int:
     """Index of the last step that begins at `time` (ns) or before; -1 where none does."""
-    return max((k for k, step in enumerate(steps) if step.begin <= time), default=-1)
+    return next((k for k in range(len(steps) - 1, -1, -1) if steps[k].begin <= time), -1)
 
 
 def _tried_from(
