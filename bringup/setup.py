@@ -59,6 +59,7 @@ setup(
             "simulate = uvms_bringup.commands.simulate:COMMAND",
             "tune = uvms_bringup.commands.tune:COMMAND",
             "vehicle = uvms_bringup.commands.vehicle:COMMAND",
+            "view = uvms_bringup.commands.view:COMMAND",
         ],
     },
 )
