@@ -8,6 +8,7 @@ import viser
 from uvms_bringup.viewer.cameras import FREE, PRESETS, WIDE, view_of
 from uvms_bringup.viewer.drawing import Drawing
 from uvms_bringup.viewer.elements import Places
+from uvms_bringup.viewer.export import quiet_server
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.moment import Moment, tool_pose
 from uvms_bringup.viewer.player import SPEEDS, Player
@@ -36,7 +37,7 @@ class Page:
 
     def __init__(self, model: SceneModel, first: Moment, host: str, port: int, title: str) -> None:
         self.model = model
-        self.server = viser.ViserServer(host, port, title, verbose=False)
+        self.server = quiet_server(host, port, title)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False)
         self.places: Places = model.all_places(first)
         self.drawing = Drawing(self.server.scene, model.nodes)
@@ -140,7 +141,9 @@ class LogPage(Page):
             self._slider = gui.add_slider(
                 "time [s]", player.start, player.end, 0.05, player.start, marks=self._marks()
             )
-            speed = gui.add_dropdown("speed", [f"{each:g} x" for each in SPEEDS], "1 x")
+            speed = gui.add_dropdown(
+                "speed", [f"{each:g} x" for each in SPEEDS], initial_value="1 x"
+            )
             if self.source.events:
                 jump = gui.add_button_group("event", ("previous", "next"))
                 jump.on_click(lambda _: self._jump(jump.value == "next"))

@@ -5,6 +5,7 @@ from argparse import Namespace
 from contextlib import suppress
 
 from uvms_analysis.errors import determine
+from uvms_bringup.viewer.export import export
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.page import LogPage
 
@@ -12,6 +13,9 @@ from uvms_bringup.viewer.page import LogPage
 def show(options: Namespace) -> int:
     """Do what the options of `uvms view` say."""
     source = determine(lambda: LogSource(options.log))
+    if options.export is not None:
+        print(export(source, options.export))
+        return 0
     page = LogPage(source, options.host, options.port)
     print(f"{source.name}: {page.address} (Ctrl-C ends it)", flush=True)
     if not options.no_browser:
