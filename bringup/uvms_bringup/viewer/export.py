@@ -3,6 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager, redirect_stdout
 from io import StringIO
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -57,7 +58,7 @@ def _recorded(source: LogSource, times: np.ndarray) -> str:
         server.initial_camera.look_at = view.look_at
         event = server.scene.add_label(f"/{model.shown_root(places)}/event", "", visible=False)
         recording = server.get_scene_serializer()
-        for before, now in zip(times[:-1], times[1:], strict=True):
+        for before, now in pairwise(times):
             recording.insert_sleep(float(now - before))
             drawing.show(model.places(source.moment(float(now))))
             text = _event(source, float(now))
@@ -79,7 +80,8 @@ def scene_server() -> Iterator[viser.ViserServer]:
     try:
         yield server
     finally:
-        server.stop()
+        with redirect_stdout(StringIO()):
+            server.stop()
 
 
 def quiet_server(host: str, port: int, title: str) -> viser.ViserServer:

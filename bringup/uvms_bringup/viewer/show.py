@@ -7,7 +7,10 @@ from contextlib import suppress
 from uvms_analysis.errors import determine
 from uvms_bringup.viewer.export import export
 from uvms_bringup.viewer.log_source import LogSource
+from uvms_bringup.viewer.movie import write_movie
 from uvms_bringup.viewer.page import LogPage
+from uvms_bringup.viewer.picture import write_picture
+from uvms_bringup.viewer.scene_model import SceneModel
 
 
 def show(options: Namespace) -> int:
@@ -16,6 +19,19 @@ def show(options: Namespace) -> int:
     if options.export is not None:
         print(export(source, options.export))
         return 0
+    if options.picture is not None:
+        time = source.end_s if options.at is None else options.at
+        moment = source.moment(time)
+        model = SceneModel(source.setting)
+        print(write_picture(model, moment, options.picture, options.camera, source.name))
+        return 0
+    if options.movie is not None:
+        print(
+            write_movie(
+                source, options.movie, options.camera, _span(source, options), options.speed
+            )
+        )
+        return 0
     page = LogPage(source, options.host, options.port)
     print(f"{source.name}: {page.address} (Ctrl-C ends it)", flush=True)
     if not options.no_browser:
@@ -23,3 +39,9 @@ def show(options: Namespace) -> int:
     with suppress(KeyboardInterrupt):
         page.serve()
     return 0
+
+
+def _span(source: LogSource, options: Namespace) -> tuple[float, float]:
+    start = source.start_s if options.start is None else options.start
+    end = source.end_s if options.end is None else options.end
+    return start, end
