@@ -28,6 +28,9 @@ def add_arguments(parser: ArgumentParser) -> None:
     parser.formatter_class = RawDescriptionHelpFormatter
     add = parser.add_argument
     add("log", nargs="?", metavar="RUN.mcap|DIR", help="log of a run, or its folder")
+    add("--live", action="store_true", help="follow a running graph, send goals, lead the tool")
+    add("--vehicle", metavar="FILE", help="with --live: its vehicle (default: as its planner says)")
+    add("--namespace", default="", metavar="NAME", help="with --live: of the vehicle's topics")
     out = parser.add_mutually_exclusive_group()
     out.add_argument("--export", metavar="FILE.html", help="write a page that needs no server")
     out.add_argument("--picture", metavar="FILE.png", help="write a picture")
@@ -39,7 +42,7 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--speed",
         type=float,
         metavar="FACTOR",
-        help="of the movie against real time (default: so that it takes 20 s)",
+        help="of the movie against real time (default: so that it takes 10 s)",
     )
     add("--camera", choices=CAMERAS, default="wide", help="of picture and movie (default: wide)")
     add("--host", default="127.0.0.1", help="address of the page (default: this machine alone)")

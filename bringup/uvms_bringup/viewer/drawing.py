@@ -47,7 +47,11 @@ class Drawing:
 
     def _add(self, node: Node) -> Any:
         name, place = f"/{node.name}", node.place
-        common = {"position": place.position, "wxyz": _wxyz(place), "visible": place.visible}
+        common: dict[str, Any] = {
+            "position": place.position,
+            "wxyz": _wxyz(place),
+            "visible": place.visible,
+        }
         if node.look is None:
             return self._scene.add_frame(name, show_axes=False, **common)
         colour = _rgb(node.look.colour)

@@ -125,8 +125,8 @@ class LogSource:
         reference = said.get(topics.REFERENCE.name)
         return Moment(
             time,
-            true=_posture(said, topics.TRUE_ODOMETRY.name, topics.TRUE_JOINT_STATES.name),
-            estimated=_posture(said, topics.ODOMETRY.name, topics.JOINT_STATES.name),
+            true=posture_of(said, topics.TRUE_ODOMETRY.name, topics.TRUE_JOINT_STATES.name),
+            estimated=posture_of(said, topics.ODOMETRY.name, topics.JOINT_STATES.name),
             covariance=None if estimate is None else estimate.pose_covariance,
             thrusts=thrusts_of(said),
             forces=forces_of(said),
@@ -147,7 +147,8 @@ class LogSource:
         return None if plan is None else plan[0]
 
 
-def _posture(said: dict[str, Any], body: str, joints: str) -> Posture | None:
+def posture_of(said: dict[str, Any], body: str, joints: str) -> Posture | None:
+    """The posture by two topics; None before both have said something."""
     if body not in said or joints not in said:
         return None
     return Posture(said[body].position, said[body].quaternion, said[joints].position)
@@ -158,7 +159,7 @@ def thrusts_of(said: dict[str, Any]) -> Thrusts | None:
     applied, asked = said.get(topics.APPLIED_THRUST.name), said.get(topics.ALLOCATION.name)
     if applied is None and asked is None:
         return None
-    thrust = asked.thrust if applied is None else applied.thrust
+    thrust = (asked if applied is None else applied).thrust  # type: ignore[union-attr]
     saturated = np.zeros(len(thrust), dtype=bool) if asked is None else asked.saturated
     return Thrusts(thrust, saturated, np.zeros(len(thrust)))
 

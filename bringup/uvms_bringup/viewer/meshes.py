@@ -44,7 +44,8 @@ def _turned(profile: list[tuple[float, float]]) -> tuple[Array, np.ndarray]:
 
 def _box() -> tuple[Array, np.ndarray]:
     """Four corners a face, so that edges stay sharp."""
-    vertices, faces = [], []
+    vertices: list[Array] = []
+    faces: list[list[int]] = []
     for axis in range(3):
         for sign in (-1.0, 1.0):
             along = sign * np.eye(3)[axis]

@@ -54,6 +54,9 @@ class Moment:
     forces: Forces | None = None
     plan: Array | None = None  # (k, 3) m, where the tool is to go next
     target: Array | None = None  # (3,) m, where the tool should be now
+    trail: Array | None = (
+        None  # (k, 3) m, the way of the tool up to now, where it is not known whole
+    )
     current: Array | None = None  # (3,) m/s, of the water
 
 

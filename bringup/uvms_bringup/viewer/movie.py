@@ -14,7 +14,7 @@ from uvms_bringup.viewer.scene_model import SceneModel
 SIZE = (640, 360)
 RATES = {".gif": 10, ".mp4": 25}
 """Frames a second by the file's suffix."""
-LONGEST_S = 20.0
+LONGEST_S = 10.0
 """Of a movie for which no speed is asked: the run is played so much faster."""
 
 

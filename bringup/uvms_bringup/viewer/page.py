@@ -23,7 +23,7 @@ LAYERS = {
     "true vehicle (ghost)": ("true",),
     "thrusts": ("estimated/thrust_",),
     "disturbance": ("estimated/force_",),
-    "travelled path": ("travelled_",),
+    "travelled path": ("travelled_", "trail"),
     "asked and planned path": ("asked_path", "planned_path", "target"),
     "error of the estimate": ("error_",),
     "sensor beams": ("estimated/beam_",),
@@ -130,7 +130,7 @@ class LogPage(Page):
         moment = self.source.moment(time)
         self.show(moment)
         self._plots.show(time)
-        self._slider.value = time
+        self._slider.value = time  # type: ignore[misc]  # viser assigns by __setattr__
         self._play.label = "Pause" if self.player.playing else "Play"
         self._status.content = status_text(self.source, moment)
 

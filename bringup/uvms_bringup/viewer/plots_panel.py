@@ -27,7 +27,7 @@ class PlotsPanel:
         panel.float(x=EDGE, y=-EDGE, width=WIDTH)
         self._curves = []
         for plot in plots:
-            known = np.isfinite(plot.values).any(axis=0)
+            known = np.atleast_1d(np.isfinite(plot.values).any(axis=0))
             if not known.any():
                 continue
             names = [name for name, is_known in zip(plot.names, known, strict=True) if is_known]

@@ -40,6 +40,7 @@ class ToolPaths:
         if asked is not None:
             self.nodes.append(self._line("asked_path", ASKED, asked, 0.5))
         self.nodes.append(Node("planned_path", Look("line", PLANNED), HIDDEN))
+        self.nodes.append(Node("trail", Look("line", TRAVELLED), HIDDEN))
         self.nodes.append(Node("target", Look("sphere", TARGET, 0.8), HIDDEN))
 
     def _line(self, name: str, colour: Colour, points: Array, opacity: float = 1.0) -> Node:
@@ -51,9 +52,13 @@ class ToolPaths:
         for name, end in self._ends.items():
             passed = bool(end <= moment.time)
             found[name] = Place(size=self._width, visible=passed, points=self._pieces[name])
-        plan, target = moment.plan, moment.target
-        found["planned_path"] = (
-            HIDDEN if plan is None or len(plan) < 2 else Place(size=1.5 * self._width, points=plan)
-        )
+        target = moment.target
+        found["planned_path"] = self._shown(moment.plan, 1.5)
+        found["trail"] = self._shown(moment.trail, 1.0)
         found["target"] = HIDDEN if target is None else Place(target, size=2.5 * self._width)
         return found
+
+    def _shown(self, points: Array | None, thickness: float) -> Place:
+        if points is None or len(points) < 2:
+            return HIDDEN
+        return Place(size=thickness * self._width, points=points)
