@@ -51,7 +51,7 @@ def simulate(
             if log is not None:
                 write_tick(log, tick, frames)
             observe(tick)
-            progress(tick.stamp, "")
+            progress(tick.stamp, "" if tick.odometry is not None else _waiting(loop))
             if tick.plan is not None and tick.plan.finished is not None and agenda.active:
                 finished = tick.plan.finished
                 state = "succeeded" if finished.success else "aborted"
@@ -65,6 +65,12 @@ def simulate(
         if log is not None and tick is not None:
             for status in loop.final_status(tick):
                 log.write(topics.DIAGNOSTICS, status)
+
+
+def _waiting(loop: Loop) -> str:
+    """What navigation waits for, for who watches the run."""
+    trouble = loop.parts[topics.NAVIGATION].trouble()
+    return "" if trouble is None else f"navigation: {trouble[1]}"
 
 
 def _begin(agenda: Agenda, goal: Goal, loop: Loop, stamp: int) -> None:

@@ -21,6 +21,7 @@ LEVER = np.array([0.8, -0.1, 0.2])
 MOUNT = Rotation.from_euler("ZYX", [20.0, -70.0, 5.0], degrees=True).as_matrix()
 N = np.diag(np.square([0.004, 0.005, 0.006, 0.02, 0.03, 0.01]))
 OPEN = float("inf")
+PARTS = ("position", "velocity", "gyro_bias", "accelerometer_bias", "compass_bias", "further")
 
 
 def state_with_target(seed):
@@ -109,8 +110,29 @@ def test_another_measurement_corrects_the_target_by_what_they_have_in_common(see
     noise = np.diag([1e-3, 2e-3, 3e-3])
     full = np.hstack([H, np.zeros((3, TARGET_SIZE))])
     expected, covariance = joint_correction(state, full, residual, noise)
-    correct(state, H, residual, noise, OPEN)
+    correct(state, H, residual, noise, OPEN, True)
     assert_is(state, expected, covariance)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_vehicle_that_is_not_corrected_by_the_best_gain_keeps_the_joint_covariance_right(seed):
+    """What is no fix leaves the DVL's misalignment as it is: the covariance is Joseph's."""
+    state, rng = state_with_target(seed), np.random.default_rng(seed)
+    H, noise = rng.standard_normal((3, SIZE)), np.diag([1e-3, 2e-3, 3e-3])
+    P, none = joint(state), np.zeros((3, TARGET_SIZE))
+    K = np.empty((JOINT_SIZE, 3))
+    for axis, residual in enumerate(np.eye(3)):  # the gain shows in what a residual changes
+        probe = state.copied()
+        correct(probe, H, 1e-6 * residual, noise, OPEN, False)
+        turn = Rotation.from_quat(probe.quaternion) * Rotation.from_quat(state.quaternion).inv()
+        parts = [getattr(probe, name) - getattr(state, name) for name in PARTS]
+        vehicle = np.concatenate([*parts[:2], turn.as_rotvec(), *parts[2:]])
+        turn = Rotation.from_quat(probe.target[3:]) * Rotation.from_quat(state.target[3:]).inv()
+        target = np.concatenate([probe.target[:3] - state.target[:3], turn.as_rotvec()])
+        K[:, axis] = np.concatenate([vehicle, target]) / 1e-6
+    left = np.eye(JOINT_SIZE) - K @ np.hstack([H, none])
+    correct(state, H, np.zeros(3), noise, OPEN, False)
+    np.testing.assert_allclose(joint(state), left @ P @ left.T + K @ noise @ K.T, atol=1e-7)
 
 
 def test_the_target_stays_where_it_is_while_the_vehicle_moves():
@@ -150,5 +172,5 @@ def test_a_sight_far_off_is_refused():
     place, attitude, _ = sight(state, LEVER, MOUNT)
     before = state.copied()
     assert correct_marker(state, place + 20.0, attitude, N, LEVER, MOUNT, 20.0) > 20.0
-    for ours, theirs in zip(state, before, strict=True):
-        np.testing.assert_array_equal(ours, theirs)
+    for name in ("position", "quaternion", "covariance", "target", "cross", "target_covariance"):
+        np.testing.assert_array_equal(getattr(state, name), getattr(before, name))

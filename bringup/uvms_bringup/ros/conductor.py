@@ -98,6 +98,7 @@ class Conductor(Node):
         self.goal_handle: Any = None
         self.agenda = Agenda(None)
         self._goal_clients: dict[str, Any] = {}  # of actions, by name
+        self._navigation = ""  # what it said last
         self._sent: Any = None  # the answer to a further goal that has been sent
         self.create_subscription(
             message_class(topics.DIAGNOSTICS),
@@ -354,6 +355,8 @@ class Conductor(Node):
 
     def _take_status(self, msg: Any) -> None:
         status = from_message(topics.DIAGNOSTICS, msg)
+        if status.name == topics.NAVIGATION:
+            self._navigation = status.message
         if status.level == diagnostics.ERROR:
             self._faults[status.name] = status.message
         for key in self._asked:
@@ -378,7 +381,9 @@ class Conductor(Node):
     def progress(self) -> str:
         """One line on the progress of the run."""
         text = f"t = {to_seconds(self.stamp):6.1f} s"
-        if self.feedback is not None and hasattr(self.feedback, "tracking_error"):
+        if topics.ODOMETRY.name not in self.recorder.newest:
+            text += f"  navigation: {self._navigation}"
+        elif self.feedback is not None and hasattr(self.feedback, "tracking_error"):
             text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
         elif self.feedback is not None and hasattr(self.feedback, "distance"):
             text += f"  {self.feedback.distance:.2f} m to go"

@@ -43,10 +43,12 @@ def is_known(state: NavigationState) -> bool:
 
 
 @exact_inner
-def correct_target(state: NavigationState, H: Array, K: Array, N: Array, residual: Array) -> None:
+def correct_target(
+    state: NavigationState, H: Array, gain: Array, N: Array, residual: Array
+) -> None:
     """What a measurement H of the vehicle says about the target, by what they have in common.
 
-    With K_T = C H^T S^-1, and whatever gain K corrects the vehicle's state:
+    With K_T = C H^T S^-1, and whatever gain K, here transposed (m, SIZE), corrects the vehicle:
 
         e_T = K_T r,  C <- (C - K_T H P) (I - K H)^T + K_T N K^T,
         P_T <- P_T - K_T H C^T - C H^T K_T^T + K_T S K_T^T.
@@ -68,12 +70,12 @@ def correct_target(state: NavigationState, H: Array, K: Array, N: Array, residua
             mean = P[i, j] - less[i, j] - less[j, i] + 0.5 * (more[i, j] + more[j, i])
             P[i, j] = mean
             P[j, i] = mean
-    _correct_cross(state.cross, H, K, own @ HP, own @ N)
+    _correct_cross(state.cross, H, gain, own @ HP, own @ N)
     move_target(state, own @ residual)
 
 
 @exact_inner
-def _correct_cross(C: Array, H: Array, K: Array, told: Array, noise: Array) -> None:
+def _correct_cross(C: Array, H: Array, gain: Array, told: Array, noise: Array) -> None:
     """C <- (C - told) (I - K H)^T + noise K^T, in place."""
     for i in range(TARGET_SIZE):
         for j in range(SIZE):
@@ -82,7 +84,7 @@ def _correct_cross(C: Array, H: Array, K: Array, told: Array, noise: Array) -> N
     for i in range(TARGET_SIZE):
         for j in range(H.shape[0]):
             left[i, j] -= noise[i, j]
-    change = left @ transposed(K)
+    change = left @ gain
     for i in range(TARGET_SIZE):
         for j in range(SIZE):
             C[i, j] -= change[i, j]

@@ -26,7 +26,7 @@ from uvms_dynamics.kernels.rotations import (
     skew,
 )
 from uvms_observer.navigation.arrays import transposed
-from uvms_observer.navigation.correction import add_error
+from uvms_observer.navigation.correction import add_error, keep_innovation
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import SIZE, NavigationState
@@ -80,7 +80,7 @@ class MarkerPose(Measurement):
 
 @exact_inner
 def sight(state: NavigationState, lever: Array, mount: Array) -> tuple[Array, Array, Array]:
-    """The expected place (3,) and attitude (4,) of the target, and H (6, 26)."""
+    """The expected place (3,) and attitude (4,) of the target, and H (6, SIZE + 6)."""
     R = quat_to_matrix(state.quaternion)
     to_camera = transposed(R @ mount)
     offset, arm = R @ lever, np.empty(3)
@@ -122,6 +122,7 @@ def correct_marker(
     for i in range(6):
         for j in range(6):
             S[i, j] += N[i, j]
+    keep_innovation(state.innovation, residual, N, S)
     S_inverse = np.linalg.inv(S)
     distance = residual.dot(S_inverse @ residual)
     if not distance <= gate:
@@ -136,7 +137,7 @@ def correct_marker(
 
 @exact_inner
 def _joint_covariance(state: NavigationState) -> Array:
-    """Covariance (26, 26) of the vehicle's state and of the target's pose."""
+    """Covariance (SIZE + 6, SIZE + 6) of the vehicle's state and of the target's pose."""
     P = np.empty((JOINT_SIZE, JOINT_SIZE))
     for i in range(SIZE):
         for j in range(SIZE):
