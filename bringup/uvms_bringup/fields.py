@@ -18,8 +18,13 @@ from pydantic_core import PydanticUndefined
 from uvms_bringup.scenario import Scenario
 from uvms_core.config import models_in
 from uvms_core.plugin import PluginConfig
+from uvms_core.sensors import sensor_type
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Sensors
 from uvms_core.yaml_text import dump_yaml
+
+FURTHER_SENSORS = ("position_fix", "target_marker")
+"""Sensors that come with the project, of which a vehicle file need not have a section."""
 
 PLAIN = {float: "number", int: "whole number", str: "text", bool: "true or false", Any: "value"}
 BOUNDS = (
@@ -78,6 +83,10 @@ def _sections(
         own = value if isinstance(value, BaseModel) else None
         for inner in models:
             yield from _sections(inner, own, _inside(path, name, field, inner), _note(field))
+    if model is Sensors:
+        for name in FURTHER_SENSORS:
+            section = sensor_type(name).section
+            yield from _sections(section, None, _joined(path, name), " The section is optional.")
 
 
 def _table(model: type[BaseModel], defaults: BaseModel | None, path: str) -> str:

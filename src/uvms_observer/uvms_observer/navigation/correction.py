@@ -138,6 +138,7 @@ def _weighted(residual: Array, gain: Array) -> Array:
 
 @exact_inner
 def keep_innovation(innovation: Array, residual: Array, N: Array, S: Array) -> None:
+    """Note a residual with noise N and covariance S, for the gate (see `NavigationState`)."""
     for i in range(WIDEST):
         for j in range(3):
             innovation[j, i] = 0.0
