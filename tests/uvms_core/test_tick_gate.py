@@ -379,3 +379,20 @@ def test_in_real_time_a_trigger_need_not_hit_the_multiples():
 
 def test_in_lockstep_only_multiples_are_ticks():
     assert off_grid(True, [k * 30 + 7 for k in range(40)]) == {}
+
+
+@pytest.mark.parametrize("late", [False, True])
+def test_a_tick_whose_input_nobody_knows_yet_is_a_safe_one_and_waits_for_nothing(late):
+    """As the odometry before navigation is initialised, whatever comes before or after that."""
+    gated = gate()
+    others = [item for item in tick_inputs(0) if item[0] != "odometry"]
+    if not late:
+        assert not [tick for name, stamp in others for tick in gated.push(name, stamp, stamp)]
+    (tick,) = gated.skip(0, {"odometry": -1})
+    assert (tick.stamp, tick.missing) == (0, ("odometry",))
+    if late:
+        assert not [tick for name, stamp in others for tick in gated.push(name, stamp, stamp)]
+    gated.push("feedback", 0, 0)
+    ticks = [tick for name, stamp in tick_inputs(DT) for tick in gated.push(name, stamp, stamp)]
+    assert [(tick.stamp, tick.missing) for tick in ticks] == [(DT, ())]
+    assert ticks[0]["odometry"] == DT
