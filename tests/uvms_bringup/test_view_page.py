@@ -59,12 +59,10 @@ def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab
         tab.open(page.address)
         tab.wait_for_text("UVMS: manipulation")
         first = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
-        page.look_from("tool")
-        page.player.jump(0.0)
         before = page.drawing.position_of("estimated/link_1").copy()
         page.player.jump(7.5)
         tab.wait_for_text("7.50 s of 8 s")
-        tab.wait(lambda: np.abs(tab.picture().astype(int) - first).max() > 60, "a change")
+        tab.wait(lambda: _scene_changed(first, tab.picture()), "a change in the scene")
         assert np.linalg.norm(page.drawing.position_of("estimated/link_1") - before) > 1e-4
         expected = source.moment(7.5).estimated.position
         assert np.abs(page.drawing.position_of("estimated") - expected).max() < 1e-6
@@ -75,6 +73,12 @@ def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab
         ended.set()
         thread.join()
         page.close()
+
+
+def _scene_changed(first, now):
+    """Whether anything has changed around the vehicle, outside the panels."""
+    part = np.abs(now.astype(int) - first)[:280, 330:930]
+    return (part.max(axis=2) > 40).sum() > 30
 
 
 def _settled(tab):

@@ -29,7 +29,7 @@ def write_movie(
 
     Raises:
         LogError: the log cannot be read.
-        ViewError: the file cannot be written, is neither GIF nor MP4, or the span is not of the run.
+        ViewError: the file cannot be written or is neither GIF nor MP4; the run has no such span.
     """
     path = Path(file)
     if path.suffix not in RATES:
