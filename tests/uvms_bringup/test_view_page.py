@@ -58,7 +58,7 @@ def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab
     try:
         tab.open(page.address)
         tab.wait_for_text("UVMS: manipulation")
-        first = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
+        (first,) = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
         before = page.drawing.position_of("estimated/link_1").copy()
         page.player.jump(7.5)
         tab.wait_for_text("7.50 s of 8 s")
@@ -82,11 +82,11 @@ def _scene_changed(first, now):
 
 
 def _settled(tab):
-    """Two pictures in a row with the same vehicle, or None."""
+    """The second of two pictures in a row with the same vehicle, in a tuple; else nothing."""
     one, other = tab.picture(), tab.picture()
     if yellow(one).sum() > MANY and abs(int(yellow(one).sum()) - int(yellow(other).sum())) < 50:
-        return one.astype(int)
-    return None
+        return (other.astype(int),)
+    return ()
 
 
 def test_the_shared_file_opens_without_server_and_network(source, tab, tmp_path):
