@@ -1,4 +1,4 @@
-"""A vehicle that floats beyond the limits of eq. (17) at the start of a path: it comes back once."""
+"""A vehicle that floats beyond the limits of eq. (17) where a path begins comes back once."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -9,8 +9,7 @@ from uvms_planner.whole_path.path_problem import PathProblem
 from uvms_planner.whole_path.plan import PathPlan
 from uvms_planner.whole_path.plan_report import FORGIVEN
 from uvms_planner.whole_path.sample import ATTITUDE, TURN
-
-Progress = Callable[[float, str], None]
+from uvms_planner.whole_path.solve import Progress
 
 
 def level_once_back(
@@ -36,6 +35,6 @@ def level_once_back(
 def stays_level(plan: PathPlan, roll_pitch: tuple[float, float]) -> bool:
     """Whether the free attitude, once within `roll_pitch`, rad, stays there."""
     tilt = np.abs(plan.values(plan.instants())[:, ATTITUDE:TURN])
-    beyond = (tilt > (1 + FORGIVEN) * np.array(roll_pitch)).any(axis=1)
-    within = np.flatnonzero(~beyond)
-    return len(within) == 0 or not beyond[within[0] :].any()
+    over = np.max(tilt / np.array(roll_pitch), axis=1)
+    within = np.flatnonzero(over <= 1 + FORGIVEN)
+    return len(within) == 0 or bool(over[within[0] :].max() <= 1 + FORGIVEN)
