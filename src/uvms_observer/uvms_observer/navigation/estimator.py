@@ -182,9 +182,9 @@ class Estimator:
             spread(tuple(self.state), *unknown, dt)
 
     def inconsistent(self) -> dict[str, float]:
-        """Levels of the sensors whose residuals are too large to be chance, by name."""
+        """How far beyond chance the levels of sensors are, as a factor; of those that are."""
         return {
-            name: tally.level
+            name: tally.level / self._gates[name].bound
             for name, tally in self.tallies.items()
             if tally.level > self._gates[name].bound
         }
