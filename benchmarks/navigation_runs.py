@@ -49,8 +49,10 @@ def runs(name: str, seeds: int, seconds: float, misalignment_deg: float) -> Iter
 def _end(vehicle: Vehicle, rig: Any, navigation: NavigationFilter, seconds: float) -> End:
     last: dict[str, Any] = {}
     nis, sizes = {}, {"imu": 3, "dvl": 3, "pressure": 1}
+    start = None
     for frame in rig.frames(seconds):
         odometry = navigation.step(*frame)
+        start = rig.motion.position(0.0) - odometry.position if start is None else start
         for name, size in sizes.items():
             tally = navigation._estimator.tallies[name]
             count = tally.accepted - (last[name].accepted if name in last else 0)
@@ -69,7 +71,7 @@ def _end(vehicle: Vehicle, rig: Any, navigation: NavigationFilter, seconds: floa
     }
     way = motion.position(np.arange(0.0, t, 0.1))
     length = float(np.linalg.norm(np.diff(way, axis=0), axis=1).sum())
-    return End(nees, nis, float(np.linalg.norm(position[:2])) / length)
+    return End(nees, nis, float(np.linalg.norm((position - start)[:2])) / length)
 
 
 def _rotation(quaternion: Array) -> Any:
