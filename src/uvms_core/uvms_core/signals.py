@@ -73,7 +73,7 @@ def to_seconds(stamp: int) -> float:
 
 @dataclass(frozen=True)
 class ImuSample:
-    """Gyrocompass and inertial unit; its axes are parallel to the body frame's."""
+    """Gyrocompass and inertial unit, in body axes."""
 
     stamp: int
     quaternion: Quaternion  # body to map_ned
@@ -82,15 +82,21 @@ class ImuSample:
     orientation_covariance: Array  # (3, 3) rad^2, about the body axes
     angular_velocity_covariance: Array  # (3, 3)
     linear_acceleration_covariance: Array  # (3, 3)
+    oriented: bool = True  # whether the attitude was measured; if not, the quaternion is level
+
+
+BOTTOM_LOCK, WATER_LOCK = "bottom", "water"
+"""What a DVL may measure against."""
 
 
 @dataclass(frozen=True)
 class DvlSample:
-    """Doppler velocity log: velocity over ground of the transducer, body axes."""
+    """Doppler velocity log: velocity of the transducer over ground or water, body axes."""
 
     stamp: int
     velocity: Array3  # m/s
     covariance: Array  # (3, 3)
+    lock: str = BOTTOM_LOCK  # or WATER_LOCK: against the water
 
 
 @dataclass(frozen=True)

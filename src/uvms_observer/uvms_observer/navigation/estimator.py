@@ -1,6 +1,6 @@
 """The filter proper: a state at a time, which samples carry forward and correct, one by one."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from copy import copy
 from functools import partial
 
@@ -8,7 +8,7 @@ import numpy as np
 
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
-from uvms_observer.navigation.alignment import aligned
+from uvms_observer.navigation.alignment import aligned, levelled
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
@@ -27,6 +27,7 @@ from uvms_observer.navigation.state import (
 )
 from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
 
+LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
 """Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
 vehicle that was pushed."""
@@ -55,6 +56,7 @@ class Estimator:
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
+        self._compass: Reading | None = None  # last sample of the heading before the start
         self._rate = np.zeros(3)  # last readings of the IMU that are believed
         self._force = np.zeros(3)
         self._inertial = 0  # ns, stamp of the last IMU sample
@@ -68,6 +70,21 @@ class Estimator:
         other.tallies = dict(self.tallies)
         return other
 
+    def look_for_heading(self, readings: Iterable[Reading]) -> None:
+        """Before the start: remember a heading, which an inertial unit without attitude needs."""
+        for reading in readings:
+            measurement = self._measurements[reading.name]
+            if measurement.usable(reading.sample) and reading.name != INERTIAL.name:
+                found = measurement.heading(reading.sample, LEVEL)
+                self._compass = self._compass if found is None else reading
+
+    def can_begin(self, readings: Iterable[Reading]) -> bool:
+        """Whether an attitude follows from these readings, and a heading known by now."""
+        return any(
+            each.name == INERTIAL.name and (each.sample.oriented or self._compass is not None)
+            for each in readings
+        )
+
     def take(self, reading: Reading) -> None:
         """Go to the reading's stamp and use it; before the first IMU sample others are ignored."""
         inertial = reading.name == INERTIAL.name
@@ -76,7 +93,8 @@ class Estimator:
                 self._align(reading.sample)
         elif inertial:
             self._carry(reading.sample)
-            self._correct(reading)
+            if self._measurements[reading.name].usable(reading.sample):
+                self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
             self._correct(reading)
@@ -91,7 +109,13 @@ class Estimator:
         return odometry(self.time or 0, self.state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        self.state = aligned(sample, self._imu, self._config, self.start)
+        imu = self._imu
+        if not sample.oriented:
+            if self._compass is None:
+                return
+            measurement, compass = self._measurements[self._compass.name], self._compass.sample
+            sample, imu = levelled(sample, imu, partial(measurement.heading, compass))
+        self.state = aligned(sample, imu, self._config, self.start)
         for each in self._measurements.values():
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance

@@ -6,6 +6,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
+from uvms_observer.navigation.heading_reference import heading_bias
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 
@@ -62,10 +63,11 @@ def _process_noise(vehicle: Vehicle, config: NavigationConfig) -> ProcessNoise:
     imu = vehicle.sensors.imu
     gyro = np.radians(imu.gyro_noise_deg_s) * config.gyro_noise_scale
     accelerometer = imu.accelerometer_noise_m_s2 * config.accelerometer_noise_scale
+    attitude = imu.roll_pitch_bias_deg, imu.roll_pitch_bias_deg, imu.heading_bias_deg
     biases = [
         *np.radians([imu.gyro_bias_deg_s] * 3),
         *[imu.accelerometer_bias_m_s2] * 3,
-        *np.radians([imu.roll_pitch_bias_deg, imu.roll_pitch_bias_deg, imu.heading_bias_deg]),
+        *(np.radians(attitude) if imu.orientation else (0.0, 0.0, heading_bias(vehicle))),
     ]
     return ProcessNoise(
         gyro=float(gyro**2 / imu.rate_hz),

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_core.signals import Array, DvlSample
+from uvms_core.signals import BOTTOM_LOCK, Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
@@ -11,6 +11,7 @@ from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import DVL_SCALE, SIZE, Fields, NavigationState
 
@@ -24,14 +25,44 @@ class DvlVelocity(Measurement):
         super().__init__(vehicle, section, config)
         self._variance = max(section.noise_m_s, config.noise_floor.velocity_m_s) ** 2
         self._rate_variance = rate_variance(vehicle)
-        self.initial_variance = {DVL_SCALE: float(np.square(section.scale_error))}
+        self._noise, self._scale = section.noise_m_s, section.scale_error
+        self._has_scale_state = section is vehicle.sensors.dvl
+        self._as_white = as_white(section.scale_error, section.rate_hz)
+        if self._has_scale_state:
+            self.initial_variance = {DVL_SCALE: float(np.square(section.scale_error))}
+
+    def usable(self, sample: DvlSample) -> bool:
+        """Whether it is over ground: the water's own motion is not known."""
+        return sample.lock == BOTTOM_LOCK
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
         noise, fields = self._rate_variance, tuple(state)
-        return correct_velocity(
-            fields, sample.velocity, self._variance, self.lever, rate, noise, gate
-        )
+        variance = self._variance + self._excess(sample)
+        if not self._has_scale_state:
+            variance += self._as_white * float(sample.velocity.dot(sample.velocity))
+            return self._correct_alone(state, sample.velocity, variance, rate, gate)
+        return correct_velocity(fields, sample.velocity, variance, self.lever, rate, noise, gate)
+
+    def _excess(self, sample: DvlSample) -> float:
+        """Variance that the message states beyond what the vehicle file knows of; the largest."""
+        stated = sample.covariance.diagonal()
+        if not stated.any():
+            return 0.0
+        known = self._noise**2 + (self._scale * sample.velocity) ** 2
+        return max(float((stated - known).max()), 0.0)
+
+    def _correct_alone(
+        self, state: NavigationState, measured: Array, variance: float, rate: Array, gate: float
+    ) -> float:
+        """As `correct_velocity`, of a further DVL: the scale error of the state is another's."""
+        expected, H = velocity(state, self.lever, rate)
+        scale = 1.0 + state.instrument_bias[0]
+        H /= scale
+        H[:, DVL_SCALE] = 0.0
+        arm = skew(self.lever)
+        N = variance * np.eye(3) + self._rate_variance * (arm @ arm.T)
+        return correct(state, H, measured - expected / scale, N, gate)
 
 
 @exact_inner
