@@ -12,7 +12,7 @@ of samples, which no part of the system reads: the vehicle file has the sensors'
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Annotated
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -85,18 +85,20 @@ class ImuSample:
     oriented: bool = True  # whether the attitude was measured; if not, the quaternion is level
 
 
-BOTTOM_LOCK, WATER_LOCK = "bottom", "water"
+Lock = Literal["bottom", "water"]
 """What a DVL may measure against."""
+BOTTOM_LOCK: Final = "bottom"
+WATER_LOCK: Final = "water"
 
 
 @dataclass(frozen=True)
 class DvlSample:
-    """Doppler velocity log: velocity of the transducer over ground or water, body axes."""
+    """Doppler velocity log: velocity of the transducer, body axes, over what it has locked on."""
 
     stamp: int
     velocity: Array3  # m/s
     covariance: Array  # (3, 3)
-    lock: str = BOTTOM_LOCK  # or WATER_LOCK: against the water
+    lock: Lock = BOTTOM_LOCK
 
 
 @dataclass(frozen=True)

@@ -117,7 +117,7 @@ class NavigationPart(Part):
         faults, self._faults = self._faults, ()
         return faults
 
-    def status(self) -> dict[str, int | float]:
+    def status(self) -> dict[str, int | float | str]:
         """Counters and uncertainty of the filter."""
         status = self.filter.status()
         return {_STATUS.get(name, name): value for name, value in status.items()}

@@ -14,6 +14,7 @@ from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,
     POSITION,
+    SIZE,
     VELOCITY,
     NavigationState,
     empty_state,
@@ -41,10 +42,10 @@ def aligned(
     horizontal, vertical = config.initial_position_std_m, config.initial_depth_std_m
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2
-    P[range(9, 18), range(9, 18)] = imu.process.bias_variance
+    P[range(9, SIZE), range(9, SIZE)] = imu.process.variance
     if start is not None:
         _go_on_from(start, state, sample, imu, R)
-    bias = np.diag(imu.process.bias_variance[6:])
+    bias = np.diag(imu.process.variance[6:9])
     P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(imu.attitude_variance)) @ R.T
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias
     P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T
@@ -63,7 +64,7 @@ def levelled(
     """
     force = sample.linear_acceleration
     angle, variance = heading(level(force)) or (0.0, np.pi**2)
-    tilt = level_variance(imu.gravity, imu.force_noise, float(imu.process.bias_variance[3]))
+    tilt = level_variance(imu.gravity, imu.force_noise, float(imu.process.variance[3]))
     return (
         replace(sample, quaternion=level(force, angle)),
         imu._replace(attitude_variance=np.array([tilt, tilt, variance])),

@@ -49,12 +49,15 @@ class NavigationFilter:
     def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
-        self._estimator = Estimator(imu, self._instruments.measurements, config)
+        self._estimator = Estimator(
+            imu, self._instruments.measurements, config, self._instruments.periods
+        )
         self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
         self._steps: deque[Step] = deque()
         self._next_trial = 0  # ns
+        self._wait = suspicion.AGAIN  # ns, between two trials
         self._stamp = -1  # of the last step
         self._newest: dict[str, int] = {}  # stamp of the newest sample, by sensor
         self.rejected = 0
@@ -178,9 +181,9 @@ class NavigationFilter:
         """Which sensors are not used, and why."""
         return trouble_of(self.health())
 
-    def status(self) -> dict[str, int | float]:
-        """Counters for diagnostics, and the uncertainty (std) of the position in m."""
-        counts: dict[str, int | float] = {"refused": self.rejected, "late": self.late}
+    def status(self) -> dict[str, int | float | str]:
+        """Counters for diagnostics, the uncertainty (std) of the position in m, what is missing."""
+        counts: dict[str, int | float | str] = {"refused": self.rejected, "late": self.late}
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
@@ -188,6 +191,8 @@ class NavigationFilter:
         counts["corrected"] = self.corrected
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
+        if self._instruments.absent:
+            counts["not_mounted"] = ", ".join(self._instruments.absent)
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
@@ -229,14 +234,17 @@ class NavigationFilter:
         """Whether the estimate is wrong, where a sensor is rejected."""
         if stamp < self._next_trial:
             return
-        self._next_trial = stamp + suspicion.AGAIN
         steps = list(self._steps)
-        for suspect in suspicion.suspects(steps, self._estimator, stamp):
+        suspects = suspicion.suspects(steps, self._estimator, stamp)
+        self._wait = min(2 * self._wait, suspicion.LONGEST) if suspects else suspicion.AGAIN
+        self._next_trial = stamp + self._wait
+        for suspect in suspects:
             found = suspicion.tried(steps, suspect, self._estimator)
             if found is not None:
                 steps, self._estimator = found
                 self._steps = deque(steps)
                 self.corrected += 1
+                self._wait = suspicion.AGAIN
                 return
 
 

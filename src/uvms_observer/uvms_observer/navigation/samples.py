@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from uvms_core import registry
 from uvms_core.checks import ROUNDED, is_unit
 from uvms_core.errors import SignalError
-from uvms_core.sensors import mounted_sensors
+from uvms_core.sensors import BUILT_IN, mounted_sensors
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.measurements.base import Measurement
@@ -35,6 +35,9 @@ class Instruments:
     def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
         sensors = mounted_sensors(vehicle)
         self.unused = frozenset(each.name for each in sensors if not each.navigation)
+        mounted = {each.type.name for each in sensors}
+        self.absent = tuple(kind.name for kind in BUILT_IN if kind.name not in mounted)
+        """Kinds of sensors that most vehicles have, and this one has not."""
         used = [each for each in sensors if each.navigation]
         self.measurements: dict[str, Measurement] = {}
         for each in used:

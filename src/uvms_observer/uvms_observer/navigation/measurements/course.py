@@ -15,9 +15,9 @@ from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
-from uvms_observer.navigation.state import SIZE, Fields, NavigationState
+from uvms_observer.navigation.state import COMPASS_BIAS, SIZE, Fields, NavigationState
 
-HEADING_BIAS = 17
+HEADING_BIAS = COMPASS_BIAS.start + 2
 """Index of the compass's bias about the body's z axis."""
 
 
@@ -36,7 +36,7 @@ def _row(state: NavigationState, R: Array, c: Array, biased: bool) -> Array:
     for i in range(3):
         H[0, 6 + i] = a[i]
         if biased:
-            H[0, 17] += a[i] * R[i, 2]
+            H[0, HEADING_BIAS] += a[i] * R[i, 2]
     return H
 
 
@@ -53,7 +53,7 @@ def heading(state: NavigationState, measured: float, biased: bool) -> tuple[Arra
     for i in range(3):
         bow[i] = R[i, 0]
     H, residual = _row(state, R, bow, biased), np.empty(1)
-    expected = np.arctan2(bow[1], bow[0]) + H[0, 17] * state.compass_bias[2]
+    expected = np.arctan2(bow[1], bow[0]) + H[0, HEADING_BIAS] * state.compass_bias[2]
     residual[0] = _within_half_a_turn(measured - expected)
     return residual, H
 
@@ -67,7 +67,7 @@ def magnetic(
     seen = R @ field
     H, residual = _row(state, R, earth, biased), np.empty(1)
     turned = np.arctan2(earth[1], earth[0]) - np.arctan2(seen[1], seen[0])
-    residual[0] = _within_half_a_turn(turned - H[0, 17] * state.compass_bias[2])
+    residual[0] = _within_half_a_turn(turned - H[0, HEADING_BIAS] * state.compass_bias[2])
     return residual, H
 
 

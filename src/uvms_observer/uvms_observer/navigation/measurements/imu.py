@@ -42,10 +42,9 @@ class Gyrocompass(Measurement):
 
     def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
         super().__init__(vehicle, section, config)
-        self._variance = attitude_variance(vehicle, config)
-        self._known = (
-            np.radians(_noise_deg(section)) ** 2 + np.radians(_bias_deg(section)) ** 2
-        ).tolist()
+        self.variance = attitude_variance(vehicle, config)
+        noise, bias = np.radians(_noise_deg(section)), np.radians(_bias_deg(section))
+        self._known: list[float] = (noise**2 + bias**2).tolist()
         self._gravity = vehicle.environment.gravity_m_s2
         self._period = to_nanoseconds(1.0 / section.rate_hz)
         self._force_variance = (
@@ -56,13 +55,16 @@ class Gyrocompass(Measurement):
         """Whether there is an attitude, or it is time for gravity."""
         return sample.oriented or sample.stamp % EVERY < self._period
 
+    def variance_of(self, sample: ImuSample) -> Array:
+        """Of the noise of an attitude (3,) rad^2, about the body axes."""
+        return with_stated(self.variance, sample.orientation_covariance, self._known)
+
     def correct(self, state: NavigationState, sample: ImuSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
         if not sample.oriented:
             force, variance = sample.linear_acceleration, self._force_variance
             return correct_gravity(tuple(state), force, self._gravity, variance, gate)
-        variances = with_stated(self._variance, sample.orientation_covariance, self._known)
-        return correct_attitude(tuple(state), sample.quaternion, variances, gate)
+        return correct_attitude(tuple(state), sample.quaternion, self.variance_of(sample), gate)
 
 
 def _noise_deg(imu: Imu) -> list[float]:

@@ -11,7 +11,7 @@ from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.state import DEPTH_BIAS, SIZE, Fields, NavigationState
+from uvms_observer.navigation.state import DEPTH_BIAS, FURTHER, SIZE, Fields, NavigationState
 
 
 class PressureDepth(Measurement):
@@ -50,9 +50,9 @@ def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     H[0, 2] = 1.0
     H[0, 6] = offset[1]
     H[0, 7] = -offset[0]
-    H[0, 19] = 1.0
+    H[0, DEPTH_BIAS] = 1.0
     reading = np.empty(1)
-    reading[0] = state.position[2] + offset[2] + state.instrument_bias[1]
+    reading[0] = state.position[2] + offset[2] + state.further[DEPTH_BIAS - FURTHER]
     return reading, H
 
 
@@ -76,8 +76,8 @@ def correct_level(
     """Another gauge's depth in m: the bias of the state is not its own."""
     state = NavigationState(*fields)
     residual, H = depth(state, lever)
-    residual[0] = measured - (residual[0] - state.instrument_bias[1])
-    H[0, 19] = 0.0
+    residual[0] = measured - (residual[0] - state.further[DEPTH_BIAS - FURTHER])
+    H[0, DEPTH_BIAS] = 0.0
     N = np.empty((1, 1))
     N[0, 0] = variance
     return correct(state, H, residual, N, gate)
