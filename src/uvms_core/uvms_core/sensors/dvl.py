@@ -14,7 +14,7 @@ from uvms_core.messages import fields, parts
 from uvms_core.messages.parts import Plain
 from uvms_core.sensors.mounting import Axes, Declared
 from uvms_core.sensors.type import SensorType
-from uvms_core.signals import BOTTOM_LOCK, WATER_LOCK, DvlSample
+from uvms_core.signals import BOTTOM_LOCK, WATER_LOCK, DvlSample, Lock
 from uvms_core.topic import Conversion, Topic
 from uvms_core.vehicle.sensors import Dvl
 
@@ -42,7 +42,7 @@ def from_message(topic: Topic, msg: Any, names: Sequence[str]) -> DvlSample:
     )
 
 
-_MODES = {1: BOTTOM_LOCK, 2: WATER_LOCK}
+_MODES: dict[int, Lock] = {1: BOTTOM_LOCK, 2: WATER_LOCK}
 """Of marine_acoustic_msgs/Dvl.velocity_mode."""
 _MODE_OF = {lock: mode for mode, lock in _MODES.items()}
 
