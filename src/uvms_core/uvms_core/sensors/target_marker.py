@@ -26,14 +26,10 @@ R_MOUNT_OPTICAL = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 class TargetMarker(Sensor):
     """Section `sensors.target_marker` of the vehicle file, which may be left out.
 
-    The marker lies in the x-y plane of its own frame; z points out of its face.
+    With `rpy_deg` of (0, 0, 0) the camera looks forward, with (0, -90, 0) down. The marker lies in
+    the x-y plane of its own frame; z points out of its face.
     """
 
-    rpy_deg: Vector3 = Field(
-        default=(0.0, 0.0, 0.0),
-        description="attitude of the camera in the body frame, deg; at zero it looks forward,"
-        " (0, -90, 0) looks down",
-    )
     field_of_view_deg: tuple[float, float] = Field(
         default=(60.0, 45.0), description="of the image, from side to side and top to bottom, deg"
     )
