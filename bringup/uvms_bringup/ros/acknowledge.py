@@ -111,6 +111,7 @@ class Acknowledgement:
         self._gaps = codec(topics.SENSOR_GAPS.type)
         self._also_gaps = recorder.receivers.get(topics.SENSOR_GAPS.name, lambda data: None)
         recorder.receivers[topics.SENSOR_GAPS.name] = self._take_gaps
+        recorder.receivers[topics.ODOMETRY_GAPS.name] = self._take_odometry_gaps
         recorder.on_message = self._look
 
     def _take_applied(self, data: bytes) -> None:
@@ -125,9 +126,12 @@ class Acknowledgement:
         message = self._gaps.decode(data)
         for sensor, newest in zip(message.sensors, message.newest, strict=True):
             self._late[self._sampled[sensor].name] = newest
-            if sensor == topics.ODOMETRY.name:
-                self._late |= dict.fromkeys(_OF_ODOMETRY, newest)
         self._also_gaps(data)
+
+    def _take_odometry_gaps(self, data: bytes) -> None:
+        """Nor is what follows from an odometry that there is not."""
+        (newest,) = self._gaps.decode(data).newest
+        self._late |= dict.fromkeys((topics.ODOMETRY.name, *_OF_ODOMETRY), newest)
 
     def _look(self) -> None:
         stamp = self._pending

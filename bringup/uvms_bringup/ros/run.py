@@ -116,7 +116,7 @@ class GraphRun:
             self.write,
             lambda: self._watch(nodes, conductor),
             self.vehicle.joint_names,
-            (*topics.of(self.vehicle), topics.SENSOR_GAPS, topics.ROSOUT),
+            (*topics.of(self.vehicle), *topics.GAPS, topics.ROSOUT),
             topics.nodes(self.vehicle),
             foreign,
             self.cast.absent,

@@ -35,7 +35,7 @@ LOADED = (
     topics.ALLOCATION,
     topics.APPLIED_THRUST,
     topics.STABILITY,
-    topics.SENSOR_GAPS,
+    *topics.GAPS,
     topics.DIAGNOSTICS,
 )
 

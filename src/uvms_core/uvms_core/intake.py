@@ -13,9 +13,11 @@ from uvms_core.plausibility import Plausibility
 from uvms_core.tick_gate import KEEP, Tick, TickGate
 from uvms_core.timeline import Item, Judged, Jump, Timeline
 from uvms_core.topic import Topic
-from uvms_core.topics import SENSOR_GAPS
+from uvms_core.topics import GAPS
 
 UNREADABLE, IMPLAUSIBLE, JUMPS, RESETS = "unreadable", "implausible", "jumps_taken", "resets"
+
+_GAPS = frozenset(topic.name for topic in GAPS)
 
 
 class Intake:
@@ -86,7 +88,7 @@ class Intake:
             yield from self._hand_over(item)
 
     def _hand_over(self, item: Item) -> list[Tick]:
-        if item.name == SENSOR_GAPS.name:
+        if item.name in _GAPS:
             gaps = item.content
             named = zip(gaps.sensors, gaps.newest, strict=True)
             newest = {self._sampled[name].name: at for name, at in named if name in self._sampled}

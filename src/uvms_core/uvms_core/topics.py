@@ -36,10 +36,12 @@ __all__ = [
     "DISTURBANCE_OBSERVER",
     "ENCODERS",
     "END_EFFECTOR_TARGET",
+    "GAPS",
     "LATCHED",
     "MOTION_PLANNER",
     "NAVIGATION",
     "NODES",
+    "ODOMETRY_GAPS",
     "PLANT",
     "RECORDED",
     "ROSOUT",
@@ -138,8 +140,17 @@ the place of the observer or the allocator may leave them out (`tick_gate.Compan
 SENSOR_GAPS = Topic(
     f"{SENSORS}gaps", "uvms_msgs/msg/SensorGaps", signals.SensorGaps, BODY_FRAME, is_occasional=True
 )
-"""Of the plant: samples that are missing or late; of navigation: its odometry, as long as it does
-not know where it is. Nobody needs it who has a real vehicle."""
+"""Of the plant: samples that are missing or late. Nobody needs it who has a real vehicle."""
+ODOMETRY_GAPS = Topic(
+    f"{ODOMETRY.name}/gaps",
+    "uvms_msgs/msg/SensorGaps",
+    signals.SensorGaps,
+    BODY_FRAME,
+    is_occasional=True,
+)
+"""Of navigation: there is no odometry at this stamp, since it does not know where it is."""
+GAPS = (SENSOR_GAPS, ODOMETRY_GAPS)
+"""What is missing, so that nobody waits for it in lockstep."""
 END_EFFECTOR_TARGET = Topic(
     "end_effector_target",
     "geometry_msgs/msg/PointStamped",
@@ -156,7 +167,7 @@ ENCODERS = "encoders"
 
 
 def sampled_topics(vehicle: Vehicle) -> dict[str, Topic]:
-    """The topics of which `SENSOR_GAPS` may speak, by the names that it has for them.
+    """The topics of which `GAPS` may speak, by the names that it has for them.
 
     Those of the vehicle's sensors with the encoders, and the odometry.
     """

@@ -75,7 +75,7 @@ class NavigationPart(Part):
         self._waits_for = waits_for() if waits_for is not None else ""
         if self._waits_for:
             names = (topics.ODOMETRY.name,)
-            yield topics.SENSOR_GAPS, SensorGaps(tick.stamp, names, (NOTHING_YET,))
+            yield topics.ODOMETRY_GAPS, SensorGaps(tick.stamp, names, (NOTHING_YET,))
             return
         self.estimate = odometry
         yield topics.ODOMETRY, odometry

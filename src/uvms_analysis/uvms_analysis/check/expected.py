@@ -66,8 +66,8 @@ def _with_gaps(log: RunLog) -> Iterator[Topic]:
     navigation does not know yet where the vehicle is. What was sent and not recorded is found out
     all the same.
     """
-    gaps = log.signals(topics.SENSOR_GAPS) if log.has(topics.SENSOR_GAPS) else []
-    names = {name for each in gaps for name in each.sensors}
+    told = [topic for topic in topics.GAPS if log.has(topic)]
+    names = {name for topic in told for each in log.signals(topic) for name in each.sensors}
     for name, topic in topics.sampled_topics(log.vehicle).items():
         if name in names:
             yield topic

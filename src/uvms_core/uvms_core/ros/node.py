@@ -125,7 +125,7 @@ class UvmsNode(Node):
         self._intake = Intake(gate, timeline, self.plausibility, self.on_time_jump, sampled)
         self._on_tick = on_tick
         waits = any(isinstance(rule, Delayed | Periodic) for rule in inputs.values())
-        for topic in (*inputs, topics.SENSOR_GAPS) if waits else inputs:
+        for topic in (*inputs, *topics.GAPS) if waits else inputs:
             self._subscribe(topic, partial(self._receive, self._intake, topic))
 
     def listen(

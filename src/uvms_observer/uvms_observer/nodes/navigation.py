@@ -36,7 +36,7 @@ class NavigationNode(PartNode):
 
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
-        self.offer(topics.SENSOR_GAPS)
+        self.offer(topics.ODOMETRY_GAPS)
 
     def make_part(self) -> NavigationPart | TruthPart:
         """The navigation filter that the parameters name, or the truth."""
