@@ -23,7 +23,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Sensors
 from uvms_core.yaml_text import dump_yaml
 
-FURTHER_SENSORS = ("position_fix", "target_marker")
+FURTHER_SENSORS = ("depth", "heading", "magnetometer", "position_fix", "target_marker")
 """Sensors that come with the project, of which a vehicle file need not have a section."""
 
 PLAIN = {float: "number", int: "whole number", str: "text", bool: "true or false", Any: "value"}

@@ -79,7 +79,8 @@ def test_a_vehicle_file_with_an_unknown_sensor_is_refused(tmp_path):
     assert done.returncode != 0
     assert (
         "sensors.usbl: no installed package brings a sensor 'usbl' (entry point in uvms.sensors);"
-        " choose from dvl, encoders, gps, imu, position_fix, pressure"
+        " choose from depth, dvl, encoders, gps, heading, imu, magnetometer, position_fix,"
+        " pressure, target_marker"
     ) in done.stderr
     assert "Traceback" not in done.stderr
 
