@@ -110,6 +110,7 @@ def correct_marker(
     """Pose of the target in the camera's axes, noise (6, 6), camera's lever arm and axes (3, 3)."""
     if not is_known(state):
         first_sight(state, position, quaternion, N, lever, mount)
+        keep_innovation(state.innovation, np.zeros(6), N, N)  # nothing was expected
         return 0.0
     place, attitude, H = sight(state, lever, mount)
     turned = quat_to_rotation_vector(quat_multiply(quaternion, quat_conjugate(attitude)))
