@@ -22,13 +22,13 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
-from uvms_observer.navigation import suspicion
+from uvms_observer.navigation import consistency, suspicion
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
 from uvms_observer.navigation.levelling import check_gravity
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
-from uvms_observer.navigation.sensor_health import Health, health_of, trouble_of
+from uvms_observer.navigation.sensor_health import Health, health_of, joined, trouble_of
 from uvms_observer.navigation.state import NavigationState
 from uvms_observer.navigation.time_line import Step, replayed, with_late
 
@@ -64,6 +64,7 @@ class NavigationFilter:
         self.late = 0
         self.corrected = 0
         self.normalized = 0
+        self.resets = 0
 
     @property
     def state(self) -> NavigationState:
@@ -178,8 +179,11 @@ class NavigationFilter:
         }
 
     def trouble(self) -> Trouble | None:
-        """Which sensors are not used, and why."""
-        return trouble_of(self.health())
+        """Which sensors are not used, and why; whether the estimate is as good as it says."""
+        return joined(
+            trouble_of(self.health()),
+            consistency.trouble_of(self._estimator.inconsistent(), self.resets),
+        )
 
     def status(self) -> dict[str, int | float | str]:
         """Counters for diagnostics, the uncertainty (std) of the position in m, what is missing."""
@@ -187,8 +191,9 @@ class NavigationFilter:
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
+            counts[f"{name}_level"] = round(tally.level, 2)
         counts["imu_held_back"], counts["imu_normalized"] = self._estimator.held, self.normalized
-        counts["corrected"] = self.corrected
+        counts["corrected"], counts["resets"] = self.corrected, self.resets
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
         if self._instruments.absent:
@@ -215,6 +220,7 @@ class NavigationFilter:
         steps, self._estimator = replayed(self._estimator, [(readings, stamp)])
         self._steps.extend(steps)
         self._question(stamp)
+        self._reset_where_lost(stamp)
         while len(self._steps) > 1 and self._steps[1].begin < stamp - self._memory:
             self._steps.popleft()
 
@@ -229,6 +235,16 @@ class NavigationFilter:
             again.insert(0, self._steps.pop())
         steps, self._estimator = replayed(again[0].before, with_late(again, late))
         self._steps.extend(steps)
+
+    def _reset_where_lost(self, stamp: int) -> None:
+        """Begin anew where the estimate cannot be right: nothing that is known explains it."""
+        since = consistency.given_up(self._estimator.tallies, stamp)
+        if not consistency.is_sound(self._estimator.state):
+            since = stamp
+        if since is not None:
+            self._estimator.restart(since)
+            self._steps.clear()
+            self.resets += 1
 
     def _question(self, stamp: int) -> None:
         """Whether the estimate is wrong, where a sensor is rejected."""
