@@ -8,11 +8,11 @@ body frame, about its origin.
 
 The annotations of the fields are the rules by which `uvms_core.checks` checks a signal; plain
 floats must be finite, and plain arrays are checked only on the way from a message (the covariances
-of samples, which no part of the system reads: the vehicle file has the sensors' noise).
+of samples, which only add to the noise that the vehicle file states; zeros where none is given).
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +73,7 @@ def to_seconds(stamp: int) -> float:
 
 @dataclass(frozen=True)
 class ImuSample:
-    """Gyrocompass and inertial unit; its axes are parallel to the body frame's."""
+    """Gyrocompass and inertial unit, in body axes."""
 
     stamp: int
     quaternion: Quaternion  # body to map_ned
@@ -82,6 +82,13 @@ class ImuSample:
     orientation_covariance: Array  # (3, 3) rad^2, about the body axes
     angular_velocity_covariance: Array  # (3, 3)
     linear_acceleration_covariance: Array  # (3, 3)
+    oriented: bool = True  # whether the attitude was measured; if not, the quaternion is level
+
+
+Lock = Literal["bottom", "water"]
+"""What a DVL may measure against."""
+BOTTOM_LOCK: Final = "bottom"
+WATER_LOCK: Final = "water"
 
 
 @dataclass(frozen=True)
@@ -91,7 +98,7 @@ class DvlSample:
     stamp: int
     velocity: Array3  # m/s
     covariance: Array  # (3, 3)
-    lock: Literal["bottom", "water"] = "bottom"
+    lock: Lock = BOTTOM_LOCK
 
 
 @dataclass(frozen=True)

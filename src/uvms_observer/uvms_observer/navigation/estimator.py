@@ -1,6 +1,6 @@
 """The filter proper: a state at a time, which samples carry forward and correct, one by one."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from copy import copy
 from dataclasses import replace
 from functools import partial
@@ -10,7 +10,7 @@ import numpy as np
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
 from uvms_observer.navigation import consistency, undecided
-from uvms_observer.navigation.alignment import aligned
+from uvms_observer.navigation.alignment import aligned, levelled
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
 from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
@@ -32,6 +32,7 @@ from uvms_observer.navigation.state import (
 from uvms_observer.navigation.undecided import Doubt
 from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
 
+LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
 """Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
 vehicle that was pushed."""
@@ -68,6 +69,7 @@ class Estimator:
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
+        self._heading: Reading | None = None  # last one before the start
         self._rate = np.zeros(3)  # last readings of the IMU that are believed
         self._force = np.zeros(3)
         self._inertial = 0  # ns, stamp of the last IMU sample
@@ -83,6 +85,21 @@ class Estimator:
         other._doubts = dict(self._doubts)
         return other
 
+    def look_for_heading(self, readings: Iterable[Reading]) -> None:
+        """Before the start: remember a heading, which an inertial unit without attitude needs."""
+        for reading in readings:
+            measurement = self._measurements[reading.name]
+            if measurement.usable(reading.sample) and reading.name != INERTIAL.name:
+                found = measurement.heading(reading.sample, LEVEL)
+                self._heading = self._heading if found is None else reading
+
+    def can_begin(self, readings: Iterable[Reading]) -> bool:
+        """Whether an attitude follows from these readings, and a heading known by now."""
+        return any(
+            each.name == INERTIAL.name and (each.sample.oriented or self._heading is not None)
+            for each in readings
+        )
+
     def take(self, reading: Reading) -> None:
         """Go to the reading's stamp and use it; before the first IMU sample others are ignored."""
         inertial = reading.name == INERTIAL.name
@@ -92,6 +109,8 @@ class Estimator:
         elif inertial:
             if not self._take_at_once(reading):
                 self._carry(reading.sample)
+                if not self._measurements[reading.name].usable(reading.sample):
+                    return
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
@@ -113,7 +132,13 @@ class Estimator:
         return odometry(self.time or 0, state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        self.state = aligned(sample, self._imu, self._config, self.start)
+        imu = self._imu
+        if not sample.oriented:
+            if self._heading is None:
+                return
+            name, heading = self._heading.name, self._heading.sample
+            sample, imu = levelled(sample, imu, partial(self._measurements[name].heading, heading))
+        self.state = aligned(sample, imu, self._config, self.start)
         for each in self._measurements.values():
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance
@@ -129,6 +154,8 @@ class Estimator:
         if compass is None or tally.row or self._memory.row or gone > GAP * imu.period:
             return False
         sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
+        if not sample.oriented:
+            return False
         rate_limit, force_limit = self._screen.limits(gone)
         rate, force = sample.angular_velocity, sample.linear_acceleration
         distance, mean = take_inertial(
@@ -138,7 +165,7 @@ class Estimator:
             to_seconds(reading.stamp - time),
             imu.gravity,
             *imu.process,
-            *(sample.quaternion, compass.variance, gate.limit, tally.mean, gate.keep),
+            *(sample.quaternion, compass.variance_of(sample), gate.limit, tally.mean, gate.keep),
         )
         if distance == UNUSUAL:
             return False

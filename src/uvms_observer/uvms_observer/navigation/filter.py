@@ -25,6 +25,7 @@ from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation import consistency, suspicion
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
+from uvms_observer.navigation.levelling import check_gravity
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
 from uvms_observer.navigation.sensor_health import Health, health_of, joined, trouble_of
@@ -51,6 +52,7 @@ class NavigationFilter:
         self._estimator = Estimator(
             imu, self._instruments.measurements, config, self._instruments.periods
         )
+        self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
         self._steps: deque[Step] = deque()
@@ -117,7 +119,7 @@ class NavigationFilter:
             NotAlignedError: no IMU sample has come yet.
         """
         good, faults = self._screen(stamp, samples)
-        return self._step(stamp, good), faults
+        return self._step(stamp, good, faults), faults
 
     def _screen(
         self, stamp: int, groups: Mapping[str, Sequence[Any]]
@@ -128,6 +130,7 @@ class NavigationFilter:
         for reading in self._instruments.readings(groups):
             try:
                 self._check_stamp(reading, stamp, newest)
+                self._check_start(reading)
                 reading = self._of_unit_length(reading)
                 checks.check(reading.name, reading.sample)
             except SignalError as fault:
@@ -138,6 +141,11 @@ class NavigationFilter:
         self.rejected += len(faults)
         return good, faults
 
+    def _check_start(self, reading: Reading) -> None:
+        """An inertial unit that starts must feel gravity the right way round."""
+        if self._estimator.time is None and reading.name == INERTIAL.name:
+            check_gravity(reading.name, self._imu, reading.sample, self._gravity)
+
     def _of_unit_length(self, reading: Reading) -> Reading:
         """Some drivers round their quaternions; what is nearly a rotation is taken as one."""
         if reading.name != INERTIAL.name or not is_nearly_unit(reading.sample.quaternion):
@@ -146,9 +154,13 @@ class NavigationFilter:
         unit = reading.sample.quaternion / np.linalg.norm(reading.sample.quaternion)
         return reading._replace(sample=replace(reading.sample, quaternion=unit))
 
-    def _step(self, stamp: int, readings: list[Reading]) -> Odometry:
-        if self._estimator.time is None and INERTIAL.name not in {each.name for each in readings}:
-            raise NotAlignedError("navigation has had no IMU sample yet; it needs an attitude")
+    def _step(
+        self, stamp: int, readings: list[Reading], faults: Sequence[SignalError] = ()
+    ) -> Odometry:
+        if self._estimator.time is None:
+            self._estimator.look_for_heading(readings)
+            if not self._estimator.can_begin(readings):
+                raise NotAlignedError(_not_aligned(readings, faults))
         for reading in readings:
             self._newest[reading.name] = reading.stamp
         self._stamp = stamp
@@ -173,9 +185,9 @@ class NavigationFilter:
             consistency.trouble_of(self._estimator.inconsistent(), self.resets),
         )
 
-    def status(self) -> dict[str, int | float]:
-        """Counters for diagnostics, and the uncertainty (std) of the position in m."""
-        counts: dict[str, int | float] = {"refused": self.rejected, "late": self.late}
+    def status(self) -> dict[str, int | float | str]:
+        """Counters for diagnostics, the uncertainty (std) of the position in m, what is missing."""
+        counts: dict[str, int | float | str] = {"refused": self.rejected, "late": self.late}
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
@@ -184,6 +196,8 @@ class NavigationFilter:
         counts["corrected"], counts["resets"] = self.corrected, self.resets
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
+        if self._instruments.absent:
+            counts["not_mounted"] = ", ".join(self._instruments.absent)
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
@@ -248,3 +262,12 @@ class NavigationFilter:
                 self.corrected += 1
                 self._wait = suspicion.AGAIN
                 return
+
+
+def _not_aligned(readings: Sequence[Reading], faults: Sequence[SignalError]) -> str:
+    """Why the filter cannot start."""
+    if faults:
+        return f"navigation cannot start: {faults[0]}"
+    if any(each.name == INERTIAL.name for each in readings):
+        return "navigation cannot start: the imu gives no attitude, and no heading has come yet"
+    return "navigation has had no IMU sample yet; it needs an attitude"

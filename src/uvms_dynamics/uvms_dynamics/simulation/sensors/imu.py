@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from uvms_core.sensors import imu
+from uvms_core.sensors.imu import LEVEL
 from uvms_core.signals import Array, ImuSample, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Imu
@@ -41,6 +42,7 @@ class ImuSensor(SensorModel):
         super().__init__(vehicle, section, period, seed)
         self._gravity = vehicle.environment.gravity_m_s2
         self._lever = np.array(section.position_m)
+        self._oriented = section.orientation
         self._noise = _errors(section, "noise")
         self._bias_std = _errors(section, "bias")
         self._bias = self._bias_std * self.rng.standard_normal(9)
@@ -48,7 +50,7 @@ class ImuSensor(SensorModel):
         self._mount = misalignment(seed, self.type.name, section.misalignment_deg)
         self._errors = _further_errors(section, seed, self.type.name)
         variance = self._noise**2 + self._bias_std**2
-        self._covariances = tuple(np.diag(variance[k : k + 3]) for k in (0, 3, 6))
+        self._covariances = [np.diag(variance[k : k + 3]) for k in (0, 3, 6)]
 
     def sample(self, trajectory: Trajectory) -> tuple[ImuSample, ...]:
         """Samples that are due on the trajectory."""
@@ -74,7 +76,12 @@ class ImuSensor(SensorModel):
         turn, force = turn + error[3:6], force + error[6:]
         if self._errors.rounds:
             turned, turn, force = self._rounded(turned, turn, force)
-        return ImuSample(stamp, turned, turn, force, *self._covariances)
+        if not self._oriented:
+            turned = LEVEL.copy()
+        attitude, rate, specific = self._covariances
+        return ImuSample(
+            stamp, turned, turn, force, attitude, rate, specific, oriented=self._oriented
+        )
 
     def _in_its_axes(self, quaternion: Array, motion: Array) -> tuple[Array, Array, Array]:
         """Attitude, turn rate and specific force about the unit's own axes, scaled as it does."""
