@@ -7,8 +7,6 @@ from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_bringup.ros.recorder import stamp_of
 from uvms_core import topics
-from uvms_core.sensors import sensor_type
-from uvms_core.topic import SENSORS
 
 Input = tuple[str, bytes]
 
@@ -40,9 +38,7 @@ class TickOf:
 
 def with_gaps(run: RunLog, own: topics.NodeTopics) -> topics.NodeTopics:
     """The node's topics, with what the plant said of missing samples if it reads sensors."""
-    reads_sensors = any(
-        topic is topics.JOINT_STATES or topic.name.startswith(SENSORS) for topic in own.inputs
-    )
+    reads_sensors = any(topic is topics.JOINT_STATES or topic.sensor for topic in own.inputs)
     if not reads_sensors or not run.has(topics.SENSOR_GAPS):
         return own
     return replace(own, inputs=(*own.inputs, topics.SENSOR_GAPS))
@@ -54,11 +50,10 @@ class Arrivals:
     def __init__(self, run: RunLog) -> None:
         self._told: dict[str, dict[int, int]] = {}  # newest stamp by tick, by full topic name
         gaps = run.signals(topics.SENSOR_GAPS) if run.has(topics.SENSOR_GAPS) else []
+        sampled = topics.sampled_topics(run.vehicle) if gaps else {}
         for each in gaps:
             for sensor, newest in zip(each.sensors, each.newest, strict=True):
-                encoders = sensor == topics.ENCODERS
-                topic = topics.JOINT_STATES if encoders else sensor_type(sensor).topic
-                name = topic.resolve(run.namespace)
+                name = sampled[sensor].resolve(run.namespace)
                 self._told.setdefault(name, {})[each.stamp] = newest
 
     def __call__(self, name: str, stamp: int, tick: int) -> int:

@@ -1,15 +1,20 @@
 """The state at the start: attitude of the first IMU sample, position of the configuration."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from uvms_core.signals import Array, ImuSample, Odometry
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.installation import Installation
+from uvms_observer.navigation.levelling import level, level_variance
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,
     POSITION,
+    SIZE,
     VELOCITY,
     NavigationState,
     empty_state,
@@ -37,14 +42,33 @@ def aligned(
     horizontal, vertical = config.initial_position_std_m, config.initial_depth_std_m
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2
-    P[range(9, 18), range(9, 18)] = imu.process.bias_variance
+    P[range(9, SIZE), range(9, SIZE)] = imu.process.variance
     if start is not None:
         _go_on_from(start, state, sample, imu, R)
-    bias = np.diag(imu.process.bias_variance[6:])
+    bias = np.diag(imu.process.variance[6:9])
     P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(imu.attitude_variance)) @ R.T
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias
     P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T
     return state
+
+
+def levelled(
+    sample: ImuSample, imu: Installation, heading: Callable[[Array], tuple[float, float] | None]
+) -> tuple[ImuSample, Installation]:
+    """A sample with the attitude that gravity and a heading give, and the unit, so uncertain.
+
+    Args:
+        sample: without attitude.
+        imu: the unit.
+        heading: gives the heading and its variance for an attitude (4,) with heading zero.
+    """
+    force = sample.linear_acceleration
+    angle, variance = heading(level(force)) or (0.0, np.pi**2)
+    tilt = level_variance(imu.gravity, imu.force_noise, float(imu.process.variance[3]))
+    return (
+        replace(sample, quaternion=level(force, angle)),
+        imu._replace(attitude_variance=np.array([tilt, tilt, variance])),
+    )
 
 
 def _go_on_from(
