@@ -42,10 +42,11 @@ class NavigationFilter:
 
     Args:
         vehicle: sensors with lever arms and noise, water, datum of the map.
-        config: start, gate, latency, factors on the noise.
+        config: start, gate, latency, factors on the noise; None: the defaults.
     """
 
-    def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
+    def __init__(self, vehicle: Vehicle, config: NavigationConfig | None = None) -> None:
+        config = config or NavigationConfig()
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
         self._estimator = Estimator(imu, self._instruments.measurements, config)
