@@ -10,7 +10,7 @@ _HEAD = f"{'navigation':<18}{'median mm':>10}{'95 % mm':>9}{'largest mm':>12}{'s
 
 LEGEND = f"""\
 The navigation filter with the vehicle's own inertial unit and the motion capture's position at
-{FIX_RATE_HZ:g} Hz as fixes (std {1e3 * FIX_STD_M:g} mm), against the motion capture at its full rate.
+{FIX_RATE_HZ:g} Hz as fixes (std {1e3 * FIX_STD_M:g} mm), against the motion capture at full rate.
 median, 95 %, largest: of the error of the position over the samples with moc_ok = 1.
 stated: median of the filter's own standard deviation of the position.
 in 3 sigma: share of samples with the error along each axis within three of its deviations.
