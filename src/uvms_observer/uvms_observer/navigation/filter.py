@@ -163,6 +163,17 @@ class NavigationFilter:
             for name, tally in self._estimator.tallies.items()
         }
 
+    def mean_nis(self) -> dict[str, float]:
+        """Normalized innovation squared of each sensor, over its dimension: 1 where all is right.
+
+        The mean over the samples that were used; sensors without any are left out.
+        """
+        return {
+            name: tally.distance / (tally.accepted * self._estimator.size_of(name))
+            for name, tally in self._estimator.tallies.items()
+            if tally.accepted
+        }
+
     def trouble(self) -> Trouble | None:
         """Which sensors are not used, and why."""
         return trouble_of(self.health())
