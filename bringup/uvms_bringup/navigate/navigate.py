@@ -23,7 +23,7 @@ from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle, dump_vehicle, load_vehicle
 from uvms_dynamics.simulation import PlantConfig
-from uvms_observer import NavigationConfig
+from uvms_observer import NavigationConfig, NavigationFilter
 from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_SPEED_M_S, lost
 
 ABSOLUTE = ("gps", "position_fix")
@@ -157,9 +157,10 @@ def _summary(
     track: Track | None,
 ) -> dict[str, Any]:
     part = estimation.part
-    trouble, health = part.trouble(), getattr(part.filter, "health", dict)()
-    nis = getattr(part.filter, "mean_nis", dict)()
-    summary = {
+    trouble, own = part.trouble(), part.filter
+    health: dict[str, Any] = own.health() if isinstance(own, NavigationFilter) else {}
+    nis: dict[str, float] = own.mean_nis() if isinstance(own, NavigationFilter) else {}
+    summary: dict[str, Any] = {
         "log": str(bag.path),
         "log_fault": bag.fault,
         "vehicle": setup.vehicle.name,

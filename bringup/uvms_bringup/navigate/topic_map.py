@@ -6,8 +6,9 @@ from pathlib import Path
 
 from uvms_bringup.errors import BringupError
 from uvms_bringup.navigate.bag import Bag
-from uvms_core import topics
-from uvms_core.sensors import INERTIAL, SensorType
+from uvms_core import registry, topics
+from uvms_core.errors import PluginError
+from uvms_core.sensors import INERTIAL, SensorType, sensor_type
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
 from uvms_core.yaml_text import read_yaml
@@ -158,7 +159,7 @@ def _guess_reference(found: TopicMap, bag: Bag) -> str | None:
 def _unused(bag: Bag, found: TopicMap, sensors: Iterable[SensorType]) -> list[str]:
     """Topics with measurements that this vehicle has no sensor for."""
     known = {sensor.topic.type for sensor in sensors}
-    further = {each.type: each.signal.__name__ for each in _standard() if each.type not in known}
+    further = sorted(_measured_types() - known)
     return [
         f"{topic}: not used, since the vehicle's file has no sensor with {bag.types[topic]}"
         for topic in bag.of_type(*further)
@@ -166,16 +167,14 @@ def _unused(bag: Bag, found: TopicMap, sensors: Iterable[SensorType]) -> list[st
     ]
 
 
-def _standard() -> list[Topic]:
-    """Topics of all kinds of sensors that navigation may use."""
-    from uvms_core import registry
-    from uvms_core.errors import PluginError
-    from uvms_core.sensors import sensor_type
-
-    kinds = []
+def _measured_types() -> set[str]:
+    """Types of the messages of all kinds of sensors that navigation may use."""
+    found = set()
     for name in registry.names(registry.SENSORS):
         try:
-            kinds.append(sensor_type(name))
+            kind = sensor_type(name)
         except PluginError:  # of somebody else's package
             continue
-    return [kind.topic for kind in kinds if kind.navigation and kind.topic.signal is not None]
+        if kind.navigation:
+            found.add(kind.message)
+    return found
