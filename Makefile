@@ -14,7 +14,7 @@ unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-run run test bench field faults lint format clean
+.PHONY: help setup setup-run run test bench field faults docs lint format clean
 
 help: ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -34,6 +34,10 @@ field: setup ## set up, then run the trial field (twenty minutes on 2 cores) and
 faults: setup ## set up, then run all fault tests, the long ones too, and write their table into docs/faults.md
 	@UVMS_FAULTS=long UVMS_FAULTS_TABLE=docs/faults.md $(BIN)/python -m pytest tests/faults $(ARGS)
 
+docs: setup ## set up, then build the documentation as a static site in site/ (open site/index.html)
+	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --config-file tools/site/mkdocs.yml
+	@echo "The documentation is in site/index.html"
+
 lint: setup ## check style and types
 	@$(BIN)/ruff check $(CODE)
 	@$(BIN)/ruff format --check $(CODE)
@@ -50,5 +54,5 @@ setup-run:
 	@$(SETUP)
 
 clean: ## remove everything that was made: .venv, runs, caches
-	rm -rf .venv runs build install log .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage
+	rm -rf .venv runs site build install log .pytest_cache .mypy_cache .ruff_cache .hypothesis .coverage
 	find $(CODE) \( -name __pycache__ -o -name '*.egg-info' \) -prune -exec rm -rf {} +

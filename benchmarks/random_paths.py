@@ -27,6 +27,8 @@ SLOWEST, FASTEST = 10.0, 0.6
 """Duration over the least in which the vehicle alone could carry the tool along."""
 SHORTEST_S, LONGEST_S = 6.0, 240.0
 DEEP_M, SHALLOW_M = 10.0, (0.6, 1.5)
+_DEEP = (0.0, 0.0, DEEP_M, 0.0)
+"""A level vehicle at that depth."""
 ROOM = 0.1  # of a joint's range on either side, for random starts
 KINDS = ("line", "circle", "helix", "waypoints", "eight", "scan", "poke")
 
@@ -87,18 +89,25 @@ def _start(vehicle: Vehicle, rng) -> Array:
 
 
 def _random_posture(vehicle: Vehicle, rng) -> Array:
-    """Joints (n,) off their stops, clear of the hull, with the free attitude within its limits."""
+    """Joints (n,) off their stops, clear of the hull, with the free attitude within its limits.
+
+    Clear is what keeps the planner's margins, or as far away as in `home`: of some arms a link is
+    near the hull in every posture.
+    """
     config, model, geometry = PlannerConfig(), build_model(vehicle), build_geometry(vehicle)
     limits = MotionLimits.of(vehicle, model, config.limits)
-    margins = clearance_margins(config.clearance, vehicle, geometry)
     own = np.array([pair.kind in OWN for pair in geometry.pairs])
+    home = np.concatenate([_DEEP, np.deg2rad(posture_deg(vehicle.arm, "home"))])
+    margins = np.minimum(
+        clearance_margins(config.clearance, vehicle, geometry), clearances(geometry, home)
+    )
     low, high = limits.lower[VEHICLE:], limits.upper[VEHICLE:]
     while True:
         q = low + rng.uniform(ROOM, 1 - ROOM, len(low)) * (high - low)
         roll, pitch = np.abs(free_attitude(model, q))
-        apart = clearances(geometry, np.concatenate([[0.0, 0.0, DEEP_M, 0.0], q]))
+        apart = clearances(geometry, np.concatenate([_DEEP, q]))
         level = roll < limits.roll_max and pitch < limits.pitch_max
-        if level and np.all(apart[own] > margins[own]):
+        if level and np.all(apart[own] >= margins[own]):
             return q
 
 

@@ -28,8 +28,10 @@ setup(
         "annotated-types>=0.5",
         "dask>=2025.7",
         "distributed>=2025.7",
+        "imageio-ffmpeg>=0.5",
         "matplotlib>=3.8",
         "numpy>=1.26",
+        "pillow>=10.1",
         "pyarrow>=15",
         "pydantic>=2.5",
         "rich>=13",
@@ -40,10 +42,11 @@ setup(
         "uvms_dynamics",
         "uvms_observer",
         "uvms_planner",
+        "viser>=1.1",
     ],
     extras_require={
         "panels": ["uvms_dynamics[panels]"],
-        "test": ["pytest", "uvms_bringup[panels]"],
+        "test": ["pytest", "uvms_bringup[panels]", "websockets"],
     },
     zip_safe=False,
     entry_points={
@@ -61,6 +64,7 @@ setup(
             "simulate = uvms_bringup.commands.simulate:COMMAND",
             "tune = uvms_bringup.commands.tune:COMMAND",
             "vehicle = uvms_bringup.commands.vehicle:COMMAND",
+            "view = uvms_bringup.commands.view:COMMAND",
         ],
     },
 )

@@ -8,8 +8,10 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
-ALONE = ("architecture", "faults", "integration", "ros")
-"""Folders with graphs, environments and clocks: one of their tests at a time."""
+ALONE = ("faults", "integration", "ros")
+"""Folders with graphs and clocks: one of their tests at a time."""
+BUILDS = ("ros/test_colcon.py",)
+"""Files in them that only build and install: these go beside the graphs."""
 FONTS = "MPLCONFIGDIR"
 """matplotlib's folder: a list of fonts that another program left broken shows on stderr."""
 
@@ -24,8 +26,9 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)  # xdist reads the groups in the same hook
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """One group for the folders of `ALONE`; of the others each file, for the sake of fixtures."""
+    """One group for the folders of `ALONE`; of the rest each file, for the sake of fixtures."""
     for item in items:
         own = item.path.relative_to(HERE)
-        group = "graphs" if own.parts[0] in ALONE else str(own)
+        is_alone = own.parts[0] in ALONE and own.as_posix() not in BUILDS
+        group = "graphs" if is_alone else str(own)
         item.add_marker(pytest.mark.xdist_group(group))

@@ -17,3 +17,7 @@ class RunError(BringupError):
 
 class CampaignError(BringupError):
     """A campaign is unknown, unreadable, names a value that is not allowed, or cannot be run."""
+
+
+class ViewError(BringupError):
+    """A view of a run cannot be shown or written."""

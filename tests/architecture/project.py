@@ -24,7 +24,9 @@ CODE = ("src", "bringup", "tests", "tools", "benchmarks", "examples")
 
 
 DISTRIBUTIONS = {
+    "PIL": "pillow",
     "annotated_types": "annotated-types",
+    "imageio_ffmpeg": "imageio-ffmpeg",
     "mcap_ros2": "mcap-ros2-support",
     "pinocchio": "pin",
     "pydantic_core": "pydantic",  # which pins it

@@ -73,4 +73,4 @@ def test_the_end_effector_follows_the_path_that_fits_the_arm(name, tmp_path):
     wanted = EndEffectorPath(goal).positions(np.array(stamps) - BEGAN)
     error = np.linalg.norm(np.array(tools) - wanted, axis=1)
     late = np.array(stamps) > 10.0  # by then the BlueROV2 has come to its rest by the bow
-    assert error[late].max() < (0.05 if name == "bluerov2_alpha5" else 0.02)
+    assert error[late].max() < 0.02

@@ -7,10 +7,11 @@ from synthetic import Known, write_log
 
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.errors import LogError
+from uvms_analysis.hull_chord import chord
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.writer import LogWriter
 from uvms_analysis.report.arrows import SHORTEST, force_arrows
-from uvms_analysis.report.posture import HULL, Posture, ball, body_shapes, chord, rod
+from uvms_analysis.report.posture import HULL, Posture, ball, body_shapes, rod
 from uvms_analysis.report.raycast import Camera, Layer, blend, frame, render, shrink
 from uvms_analysis.report.scene import SIZE, draw_scene
 from uvms_core.vehicle import load_vehicle

@@ -5,10 +5,12 @@ from scipy.spatial.transform import Rotation
 
 from uvms_dynamics.kernels.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
 from uvms_observer.navigation.propagation import ProcessNoise
-from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.state import FURTHER, SIZE, WIDEST, NavigationState
 
-NOISE = ProcessNoise(1e-6, 1e-4, np.linspace(1e-6, 9e-6, 9), 600.0)
-SCALES = np.repeat([1.0, 0.1, 0.02, 1e-3, 1e-2, 2e-3, 1e-2], [3, 3, 3, 3, 3, 3, 2])
+NOISE = ProcessNoise(
+    1e-6, 1e-4, np.linspace(1e-6, 9e-6, SIZE - 9), 1.0 / np.linspace(100.0, 900.0, SIZE - 9)
+)
+SCALES = np.repeat([1.0, 0.1, 0.02, 1e-3, 1e-2, 2e-3, 1e-2], [3, 3, 3, 3, 3, 3, SIZE - 18])
 
 
 def random_state(seed):
@@ -23,19 +25,20 @@ def random_state(seed):
         0.01 * rng.standard_normal(3),
         0.1 * rng.standard_normal(3),
         0.01 * rng.standard_normal(3),
-        0.01 * rng.standard_normal(2),
+        0.01 * rng.standard_normal(SIZE - FURTHER),
         root @ root.T,
+        np.zeros((3, WIDEST)),
     )
 
 
 def minus(a, b):
-    """Error e (20,) with a = b (+) e."""
+    """Error e (SIZE,) with a = b (+) e."""
     turn = quat_to_rotation_vector(quat_multiply(a.quaternion, quat_conjugate(b.quaternion)))
     rest = [x - y for x, y in zip(a[3:7], b[3:7], strict=True)]
     return np.concatenate((a.position - b.position, a.velocity - b.velocity, turn, *rest))
 
 
 def numeric_jacobian(f, h=1e-5):
-    """Derivative (m, 20) of f(e) at zero, central differences."""
+    """Derivative (m, SIZE) of f(e) at zero, central differences."""
     columns = [(f(h * e) - f(-h * e)) / (2.0 * h) for e in np.eye(SIZE)]
     return np.array(columns).T

@@ -17,6 +17,8 @@ from uvms_observer.navigation.state import (
     ACCELEROMETER_BIAS,
     ATTITUDE,
     COMPASS_BIAS,
+    DVL_MISALIGNMENT,
+    FURTHER,
     GYRO_BIAS,
     POSITION,
     SIZE,
@@ -24,11 +26,11 @@ from uvms_observer.navigation.state import (
     NavigationState,
 )
 
-BIASES = slice(9, 18)
+LATER = slice(9, SIZE)
 
 
 def plus(state: NavigationState, e: Array) -> NavigationState:
-    """State (+) error e (20,): R <- Exp(dtheta) R, all else added."""
+    """State (+) error e (SIZE,): R <- Exp(dtheta) R, all else added."""
     turned = quat_multiply(rotation_vector_to_quat(e[ATTITUDE]), state.quaternion)
     return NavigationState(
         state.position + e[POSITION],
@@ -37,12 +39,13 @@ def plus(state: NavigationState, e: Array) -> NavigationState:
         state.gyro_bias + e[GYRO_BIAS],
         state.accelerometer_bias + e[ACCELEROMETER_BIAS],
         state.compass_bias + e[COMPASS_BIAS],
-        state.instrument_bias + e[18:20],
+        state.further + e[FURTHER:],
         state.covariance,
+        state.innovation,
     )
 
 
-def decayed(bias: Array, variance: Array, phi: float) -> Array:
+def decayed(bias: Array, variance: Array, phi: Array) -> Array:
     """Gauss-Markov, but for a bias that is far beyond its deviation: that one has stepped."""
     return np.where(np.square(bias) < BEYOND**2 * variance, phi * bias, bias)
 
@@ -53,7 +56,7 @@ def propagated_mean(
     force: Array,
     dt: float,
     gravity: float,
-    phi: float,
+    phi: Array,
     variance: Array | None = None,
 ) -> NavigationState:
     """Nominal state after dt under mean rate and mean specific force, covariance unchanged."""
@@ -61,23 +64,24 @@ def propagated_mean(
     middle = quat_multiply(state.quaternion, half)
     force_world = quat_to_matrix(middle) @ (force - state.accelerometer_bias)
     acceleration = force_world + np.array([0.0, 0.0, gravity])
-    variance = np.full(9, np.inf) if variance is None else variance
+    variance = np.full(SIZE - 9, np.inf) if variance is None else variance
     return NavigationState(
         state.position + state.velocity * dt + 0.5 * acceleration * dt**2,
         state.velocity + acceleration * dt,
         quat_multiply(middle, half),
-        decayed(state.gyro_bias, variance[:3], phi),
-        decayed(state.accelerometer_bias, variance[3:6], phi),
-        phi * state.compass_bias,
-        state.instrument_bias,
+        decayed(state.gyro_bias, variance[:3], phi[:3]),
+        decayed(state.accelerometer_bias, variance[3:6], phi[3:6]),
+        phi[6:9] * state.compass_bias,
+        phi[9:] * state.further,
         state.covariance,
+        state.innovation,
     )
 
 
 def transition_matrix(
-    state: NavigationState, rate: Array, force: Array, dt: float, phi: float
+    state: NavigationState, rate: Array, force: Array, dt: float, phi: Array
 ) -> Array:
-    """F (20, 20): e after dt = F e before."""
+    """F (SIZE, SIZE): e after dt = F e before."""
     half = rotation_vector_to_quat(0.5 * dt * (rate - state.gyro_bias))
     R = quat_to_matrix(quat_multiply(state.quaternion, half))
     A = skew(R @ (force - state.accelerometer_bias))
@@ -90,18 +94,18 @@ def transition_matrix(
     F[POSITION, ATTITUDE] = 0.5 * dt * F[VELOCITY, ATTITUDE]
     F[POSITION, GYRO_BIAS] = 0.5 * dt * F[VELOCITY, GYRO_BIAS]
     F[POSITION, ACCELEROMETER_BIAS] = 0.5 * dt * F[VELOCITY, ACCELEROMETER_BIAS]
-    F[BIASES, BIASES] = phi * np.eye(9)
+    F[LATER, LATER] = np.diag(phi)
     return F
 
 
-def process_covariance(noise: ProcessNoise, dt: float, phi: float) -> Array:
-    """Q (20, 20) that dt adds."""
+def process_covariance(noise: ProcessNoise, dt: float, phi: Array) -> Array:
+    """Q (SIZE, SIZE) that dt adds."""
     Q = np.zeros((SIZE, SIZE))
     Q[POSITION, POSITION] = np.eye(3) * noise.accelerometer * dt**3 / 3.0
     Q[POSITION, VELOCITY] = Q[VELOCITY, POSITION] = np.eye(3) * noise.accelerometer * dt**2 / 2.0
     Q[VELOCITY, VELOCITY] = np.eye(3) * noise.accelerometer * dt
     Q[ATTITUDE, ATTITUDE] = np.eye(3) * noise.gyro * dt
-    Q[BIASES, BIASES] = (1.0 - phi**2) * np.diag(noise.bias_variance)
+    Q[LATER, LATER] = np.diag((1.0 - phi**2) * noise.variance)
     return Q
 
 
@@ -114,17 +118,28 @@ def propagated(
     noise: ProcessNoise,
 ) -> NavigationState:
     """Nominal state and covariance F P F^T + Q after dt."""
-    phi = float(np.exp(-dt / noise.bias_time_constant))
+    phi = np.exp(-dt * noise.decay)
     F = transition_matrix(state, rate, force, dt, phi)
     covariance = F @ state.covariance @ F.T + process_covariance(noise, dt, phi)
-    mean = propagated_mean(state, rate, force, dt, gravity, phi, noise.bias_variance)
+    mean = propagated_mean(state, rate, force, dt, gravity, phi, noise.variance)
     return mean._replace(covariance=covariance)
 
 
-def corrected(state: NavigationState, H: Array, residual: Array, N: Array) -> NavigationState:
+def conditional(P: Array) -> Array:
+    """Covariance (SIZE, SIZE) of the other states where the DVL's misalignment is known."""
+    m = slice(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3)
+    known = P - P[:, m] @ np.linalg.inv(P[m, m]) @ P[m]
+    known[m], known[:, m] = 0.0, 0.0
+    return known
+
+
+def corrected(
+    state: NavigationState, H: Array, residual: Array, N: Array, is_fix: bool
+) -> NavigationState:
     """State and covariance after one measurement, Joseph form."""
     P = state.covariance
-    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + N)
+    known = P if is_fix else conditional(P)
+    K = known @ H.T @ np.linalg.inv(H @ known @ H.T + N)
     left = np.eye(SIZE) - K @ H
     covariance = left @ P @ left.T + K @ N @ K.T
     return plus(state, K @ residual)._replace(covariance=covariance)

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements import dvl, imu, position, pressure
 from uvms_observer.navigation.propagation import propagate
+from uvms_observer.navigation.state import SIZE
 
 G = 9.81
 RATE, FORCE = np.array([0.1, -0.2, 0.3]), np.array([0.4, -0.3, -9.6])
@@ -31,7 +32,7 @@ def test_propagation_equals_the_numpy_reference(seed, dt):
 
 @pytest.mark.parametrize("seed", range(4))
 def test_transition_matrix_is_the_derivative_of_the_propagation(seed):
-    state, dt, phi = random_state(seed), 0.01, 0.999
+    state, dt, phi = random_state(seed), 0.01, np.linspace(0.99, 1.0, SIZE - 9)
     nominal = numpy_reference.propagated_mean(state, RATE, FORCE, dt, G, phi)
 
     def error_after(e):
@@ -69,7 +70,8 @@ def test_a_full_turn_brings_the_attitude_back():
 
 
 EXPECTATIONS = {
-    "dvl": lambda state: dvl.velocity(state, LEVER, RATE),
+    "dvl": lambda state: dvl.velocity(state, LEVER, RATE, False),
+    "dvl in water lock": lambda state: dvl.velocity(state, LEVER, RATE, True),
     "pressure": lambda state: pressure.depth(state, LEVER),
     "gps": lambda state: position.position(state, LEVER),
 }
@@ -97,24 +99,27 @@ def test_derivative_of_the_gyrocompass_residual(seed):
 
 
 @settings(max_examples=25, deadline=None)
-@given(seed=seeds)
-def test_correction_equals_the_numpy_reference(seed):
+@given(seed=seeds, is_fix=st.booleans())
+def test_correction_equals_the_numpy_reference(seed, is_fix):
     state, rng = random_state(seed), np.random.default_rng(seed)
-    H, residual = rng.standard_normal((3, 20)), 0.01 * rng.standard_normal(3)
-    expected = numpy_reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]))
-    correct(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), OPEN)
-    for ours, theirs in zip(state, expected, strict=True):
+    H, residual = rng.standard_normal((3, SIZE)), 0.01 * rng.standard_normal(3)
+    expected = numpy_reference.corrected(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), is_fix)
+    correct(state, H, residual, np.diag([1e-3, 2e-3, 3e-3]), OPEN, is_fix)
+    for ours, theirs in zip(state[:-1], expected[:-1], strict=True):
         np.testing.assert_allclose(ours, theirs, rtol=1e-8, atol=1e-11)
 
 
 def test_correction_returns_the_mahalanobis_distance_and_keeps_to_the_gate():
     state = random_state(3)
     before = state.copied()
-    H, residual, N = np.eye(3, 20), np.array([1.0, 2.0, -1.0]), 0.1 * np.eye(3)
+    H, residual, N = np.eye(3, SIZE), np.array([1.0, 2.0, -1.0]), 0.1 * np.eye(3)
     expected = residual @ np.linalg.solve(H @ before.covariance @ H.T + N, residual)
     assert correct(state, H, residual, N, 0.99 * expected) == pytest.approx(expected, rel=1e-9)
-    for ours, theirs in zip(state, before, strict=True):
+    for ours, theirs in zip(state[:-1], before[:-1], strict=True):
         np.testing.assert_array_equal(ours, theirs)
+    S = H @ before.covariance @ H.T + N
+    stds = [np.sqrt(np.diag(matrix)) for matrix in (N, S)]
+    np.testing.assert_allclose(state.innovation[:, :3], [residual, *stds])
     correct(state, H, residual, N, 1.01 * expected)
     assert np.trace(state.covariance) < np.trace(before.covariance)
 
@@ -125,7 +130,7 @@ def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
     for _ in range(300):
         propagate(state, RATE, RATE, FORCE, FORCE, 0.01, G, *NOISE)
         imu.correct_attitude(state, state.quaternion.copy(), np.full(3, 1e-10), OPEN)
-        dvl.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, OPEN)
+        dvl.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, False, OPEN)
         pressure.correct_depth(state, 1.0, 1e-8, LEVER, OPEN)
         np.testing.assert_array_equal(state.covariance, state.covariance.T)
     assert np.linalg.eigvalsh(state.covariance).min() > -1e-15
@@ -134,7 +139,7 @@ def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
 
 def test_gyro_noise_enters_by_the_lever_arm_of_the_dvl():
     quiet, noisy = random_state(5), random_state(5)
-    measured = dvl.velocity(quiet, LEVER, RATE)[0] + 0.01
-    near = dvl.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, OPEN)
-    far = dvl.correct_velocity(noisy, measured, 1e-4, LEVER, RATE, 1e-2, OPEN)
+    measured = dvl.velocity(quiet, LEVER, RATE, False)[0] + 0.01
+    near = dvl.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, False, OPEN)
+    far = dvl.correct_velocity(noisy, measured, 1e-4, LEVER, RATE, 1e-2, False, OPEN)
     assert far < near

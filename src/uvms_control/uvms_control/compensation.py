@@ -37,7 +37,8 @@ take from it, w = |g| / (|g| + |l|) is what it is worth, and w^2 (3 - 2 w) of it
 of it within the bounds, nothing far beyond them, and smoothly between the two.
 
 An error along an axis that neither thrusters nor hull bring back only grows (`as_if_held`): the arm
-would be stretched after it as far as it goes, and is not.
+would be stretched after it as far as it goes, and is not. Of an axis that only the hull brings back
+the arm makes up for its rest and not for its swing (`HullSwing`).
 """
 
 from dataclasses import replace
@@ -78,18 +79,26 @@ class JointCorrection(NamedTuple):
     acceleration: Array  # rad/s^2
 
 
-def as_if_held(odometry: Odometry, tracking: TrackingError, is_controlled: Flags) -> Odometry:
+def as_if_held(
+    odometry: Odometry,
+    tracking: TrackingError,
+    is_controlled: Flags,
+    swing: tuple[Array, Array] | None = None,
+) -> Odometry:
     """The vehicle as it would be without its error along axes that nothing brings it back along.
 
     Args:
         odometry: estimated state.
         tracking: errors against the reference, body frame.
         is_controlled: (6,) axes that the thrusters control.
+        swing: what else is left out, of error and rate (6,) each, as of `HullSwing.step`.
     """
     gone = NOT_RIGHTED & ~is_controlled
-    if not gone.any():
-        return odometry
     error, rate = np.where(gone, tracking.error, 0.0), np.where(gone, tracking.rate, 0.0)
+    if swing is not None:
+        error, rate = error + swing[0], rate + swing[1]
+    if not (error.any() or rate.any()):
+        return odometry
     return replace(
         odometry,
         position=odometry.position + quat_to_matrix(odometry.quaternion) @ error[:3],

@@ -10,6 +10,7 @@ from uvms_control.compensation import as_if_held
 from uvms_control.config import ControlConfig
 from uvms_control.controlled_axes import axes_of
 from uvms_control.design.gains import VehicleGains, thrust_delay, vehicle_gains
+from uvms_control.hull_swing import HullSwing
 from uvms_control.reference import PlannedMotion, ReferenceSample
 from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import tracking_error
@@ -64,6 +65,7 @@ class Controller:
         self._monitor = NO_MONITOR
         self._lead = 0
         self.arm = ArmLaw(vehicle, self._loaded, config)
+        self._swing = HullSwing()
         self._budget: DisturbanceBudget | None = None
         self.reset()
 
@@ -91,6 +93,7 @@ class Controller:
         self._reference: Reference | None = None  # that was checked
         self._plan: PlannedMotion  # of that
         self._law.reset()
+        self._swing.reset()
         self._loaded.take(None)
         self.arm.reset()
 
@@ -131,7 +134,15 @@ class Controller:
         held = odometry
         if self._config.enabled and not self._axes.is_controlled.all():
             tracking = tracking_error(odometry, desired)
-            held = as_if_held(odometry, tracking, self._axes.is_controlled)
+            swing = self._swing.step(
+                self._loaded.model,
+                (desired.q, desired.q_dot),
+                mass,
+                tracking,
+                self._axes.is_controlled,
+                dt,
+            )
+            held = as_if_held(odometry, tracking, self._axes.is_controlled, swing)
         effort = self.arm.step(odometry, desired, mass, nu_dot, dt, held)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
 

@@ -12,7 +12,7 @@ of samples, which no part of the system reads: the vehicle file has the sensors'
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Annotated
+from typing import Annotated, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -86,11 +86,12 @@ class ImuSample:
 
 @dataclass(frozen=True)
 class DvlSample:
-    """Doppler velocity log: velocity over ground of the transducer, body axes."""
+    """Doppler velocity log: velocity of the transducer, body axes, over what it has locked on."""
 
     stamp: int
     velocity: Array3  # m/s
     covariance: Array  # (3, 3)
+    lock: Literal["bottom", "water"] = "bottom"
 
 
 @dataclass(frozen=True)

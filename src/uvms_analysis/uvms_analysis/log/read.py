@@ -98,6 +98,11 @@ class RunLog:
         return cls(read_records(path))
 
     @property
+    def records(self) -> Records:
+        """The records of the file, for those who look up single instants."""
+        return self._records
+
+    @property
     def run(self) -> dict[str, str]:
         """Metadata of the run: scenario, seed, git revision, version, pace, command."""
         return self.metadata.get(RUN, {})

@@ -36,6 +36,8 @@ from uvms_analysis.log import seal
 from uvms_analysis.log.unpack import stream_of, unpacked, walk
 
 _MESSAGE = struct.Struct("<HIQQ")
+_SPAN = struct.Struct("<QQ")
+"""What a chunk begins with: log times of its first and last message."""
 _CHECKSUM = struct.Struct("<I")
 
 UNFINISHED = "the writer was stopped early, or the end of the file is damaged"
@@ -89,6 +91,43 @@ class Records:
         """Note what is wrong with the file, once."""
         if text not in self.faults:
             self.faults.append(text)
+
+    def spans(self) -> list[tuple[int, int]]:
+        """First and last log time of each block in ns, read from their heads alone.
+
+        Raises:
+            LogError: the file is gone.
+        """
+        found = []
+        with self._open() as file:
+            for block in self.blocks:
+                file.seek(block.start)
+                if block.code == Opcode.CHUNK:
+                    found.append(_SPAN.unpack(file.read(_SPAN.size)))
+                else:
+                    stamp = _MESSAGE.unpack(file.read(_MESSAGE.size))[2]
+                    found.append((stamp, stamp))
+        return found
+
+    def block(self, number: int, channels: set[int]) -> list[Entry]:
+        """Messages of these channels in one block, in the order of the file.
+
+        Raises:
+            LogError: the file has changed since it was opened, or is gone.
+        """
+        block = self.blocks[number]
+        try:
+            with self._open() as file:
+                file.seek(block.start)
+                return list(_entries(block.code, file.read(block.length), channels))
+        except DAMAGE as fault:
+            raise LogError(f"log {self.path}: was changed while it was read") from fault
+
+    def _open(self) -> BinaryIO:
+        try:
+            return self.path.open("rb")
+        except OSError as fault:
+            raise LogError(f"log {self.path}: cannot be read: {fault.strerror}") from fault
 
     def messages(self, channels: set[int] | None = None) -> Iterator[Entry]:
         """Messages of these channels, or of all, in the order of the file.

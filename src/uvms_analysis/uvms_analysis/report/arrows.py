@@ -6,8 +6,9 @@ import numpy as np
 from matplotlib.colors import to_rgb
 
 from uvms_analysis.analysis import Analysis
+from uvms_analysis.hull_chord import chord, tunnel
 from uvms_analysis.log.read import Series
-from uvms_analysis.report.posture import Posture, arrow, chord, tunnel
+from uvms_analysis.report.posture import Posture, arrow
 from uvms_analysis.report.raycast import Shape
 from uvms_core.signals import Array
 from uvms_core.vehicle.hull import Hull

@@ -5,12 +5,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from uvms_analysis.hull_chord import half_axes, middle, tunnel
 from uvms_analysis.report.raycast import Shape
 from uvms_core.description.solids import (
-    THRUSTER_LENGTH_M,
     THRUSTER_RADIUS_M,
     Solid,
-    hull_solids,
     link_solids,
 )
 from uvms_core.description.tree import basis
@@ -18,7 +17,6 @@ from uvms_core.scene import Obstacle
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.frames import Pose, arm_frames, compose, joint_frames
-from uvms_core.vehicle.hull import Hull
 from uvms_core.vehicle.outline import box_outline
 
 Colour = tuple[float, float, float]
@@ -28,8 +26,6 @@ LINKS: tuple[Colour, Colour] = ((0.90, 0.42, 0.16), (0.66, 0.69, 0.73))
 JOINT: Colour = (0.24, 0.26, 0.30)
 THRUSTER: Colour = (0.22, 0.24, 0.28)
 OBSTACLE: Colour = (0.55, 0.50, 0.44)
-MOUTH_M = 0.006
-"""How far the mouth of a tunnel thruster stands out of the hull."""
 JOINT_RADIUS = 1.12
 """Of a joint's ball, in radii of the link that it turns."""
 
@@ -97,8 +93,8 @@ def _obstacle(obstacle: Obstacle) -> Shape:
 
 def _hull(vehicle: Vehicle, pose: Pose) -> Shape:
     """The spheroid itself; without one, the sphere of the hull's volume, as in the URDF."""
-    centre = pose[0] + pose[1] @ _centre(vehicle.hull)
-    return Shape("sphere", centre, pose[1] * _half_axes(vehicle.hull), HULL)
+    centre = pose[0] + pose[1] @ middle(vehicle.hull)
+    return Shape("sphere", centre, pose[1] * half_axes(vehicle.hull), HULL)
 
 
 def _thrusters(vehicle: Vehicle, pose: Pose) -> list[Shape]:
@@ -111,39 +107,6 @@ def _thrusters(vehicle: Vehicle, pose: Pose) -> list[Shape]:
                 for s in (first, last)]  # fmt: skip
         shapes.append(rod(ends[0], ends[1], THRUSTER_RADIUS_M, THRUSTER))
     return shapes
-
-
-def tunnel(vehicle: Vehicle, position: Array, along: Array) -> tuple[float, float]:
-    """Where the thruster's cylinder begins and ends along its axis, m from its position."""
-    half = 0.5 * THRUSTER_LENGTH_M
-    through = chord(vehicle.hull, position, along)
-    form = vehicle.hull.spheroid
-    if through is None or form is None or np.ptp(through) > 1.01 * form.diameter_m:
-        return -half, half  # outside, or along the hull
-    return min(through[0] - MOUTH_M, -half), max(through[1] + MOUTH_M, half)
-
-
-def chord(hull: Hull, position: Array, along: Array) -> tuple[float, float] | None:
-    """Where a line through a point enters and leaves the hull, m along a unit vector."""
-    scale, centre = 1.0 / _half_axes(hull), _centre(hull)
-    o, d = (position - centre) * scale, along * scale
-    under = (o @ d) ** 2 - (d @ d) * (o @ o - 1.0)
-    if under <= 0.0:
-        return None
-    root = float(np.sqrt(under))
-    return float((-(o @ d) - root) / (d @ d)), float((-(o @ d) + root) / (d @ d))
-
-
-def _half_axes(hull: Hull) -> Array:
-    """Half axes (3,) of the spheroid, or of the sphere of the hull's volume."""
-    if hull.spheroid is None:
-        return np.full(3, hull_solids(hull)[0].radius)
-    length, diameter = hull.spheroid.length_m, hull.spheroid.diameter_m
-    return 0.5 * np.array([length, diameter, diameter])
-
-
-def _centre(hull: Hull) -> Array:
-    return np.zeros(3) if hull.spheroid is not None else np.array(hull.cb_m)
 
 
 def _solid(solid: Solid, frame: Pose, colour: Colour) -> Shape:

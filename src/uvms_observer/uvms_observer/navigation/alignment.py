@@ -10,6 +10,7 @@ from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,
     POSITION,
+    SIZE,
     VELOCITY,
     NavigationState,
     empty_state,
@@ -37,10 +38,10 @@ def aligned(
     horizontal, vertical = config.initial_position_std_m, config.initial_depth_std_m
     P[[0, 1, 2], [0, 1, 2]] = np.array([horizontal, horizontal, vertical]) ** 2
     P[VELOCITY, VELOCITY] = np.eye(3) * config.initial_velocity_std_m_s**2
-    P[range(9, 18), range(9, 18)] = imu.process.bias_variance
+    P[range(9, SIZE), range(9, SIZE)] = imu.process.variance
     if start is not None:
         _go_on_from(start, state, sample, imu, R)
-    bias = np.diag(imu.process.bias_variance[6:])
+    bias = np.diag(imu.process.variance[6:9])
     P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(imu.attitude_variance)) @ R.T
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias
     P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T

@@ -3,8 +3,9 @@
     S = H P H^T + N,  d^2 = r^T S^-1 r,  K = P H^T S^-1,
     e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
 
-The Joseph form keeps P positive semidefinite under rounding. The tests compare it
-with the same in plain numpy.
+The Joseph form holds for any gain and keeps P positive semidefinite under rounding. The tests
+compare it with the same in plain numpy. Products are written row by row: a derivative has few
+entries, and numba makes vector instructions of such loops.
 """
 
 import numpy as np
@@ -12,51 +13,221 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
-from uvms_observer.navigation.arrays import transposed
-from uvms_observer.navigation.state import SIZE, NavigationState
+from uvms_observer.navigation.state import (
+    DVL_MISALIGNMENT,
+    FURTHER,
+    SIZE,
+    WIDEST,
+    NavigationState,
+)
+
+TINY = 1e-18
+"""rad^2, added to the variance of a misalignment that may be 0."""
 
 
 @exact_kernel
-def correct(state: NavigationState, H: Array, residual: Array, N: Array, gate: float) -> float:
+def correct(
+    state: NavigationState,
+    H: Array,
+    residual: Array,
+    N: Array,
+    gate: float,
+    is_fix: bool = False,
+) -> float:
     """Correct the state in place, unless the residual's distance is beyond the gate.
 
     Args:
-        H: (m, 20) derivative of the measurement by the error state.
+        H: (m, SIZE) derivative of the measurement by the error state.
         residual: (m,) measured minus expected.
         N: (m, m) covariance of the measurement's noise.
         gate: largest d^2 that is accepted.
+        is_fix: whether a position is measured, from which the DVL's misalignment can be told.
+            Other samples are weighed as if that were known, and the covariance accounts for its not
+            being so: through accelerations they would estimate it, worse than mounting does.
 
     Returns:
-        d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed.
+        d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed but
+        the innovation that the state keeps.
     """
-    PHt = state.covariance @ transposed(H)
-    S = H @ PHt
-    for i in range(N.shape[0]):
-        for j in range(N.shape[0]):
-            S[i, j] += N[i, j]
-    S_inverse = np.linalg.inv(S)
-    distance = residual.dot(S_inverse @ residual)
+    HP = _rows(H, state.covariance)
+    S = _covariance_of(HP, H, N)
+    _keep_innovation(state.innovation, residual, N, S)
+    weights = inverse(S)
+    distance = _squared(residual, weights)
     if not distance <= gate:
         return distance
-    K = PHt @ S_inverse
-    _correct_covariance(state.covariance, K, H, N)
-    _add_error(state, K @ residual)
+    if is_fix:
+        gain = _rows(weights, HP)
+    else:
+        known = _of_known_mounting(state.covariance, HP)
+        gain = _rows(inverse(_covariance_of(known, H, N)), known)
+    _correct_covariance(state.covariance, gain, H, HP, N)
+    _add_error(state, _weighted(residual, gain))
     return distance
 
 
 @exact_inner
-def _correct_covariance(P: Array, K: Array, H: Array, N: Array) -> None:
-    left = K @ H
+def _rows(A: Array, B: Array) -> Array:
+    """A B, (m, k) times (k, n), for an A with many zeros."""
+    out = np.zeros((A.shape[0], B.shape[1]))
+    for i in range(A.shape[0]):
+        for k in range(A.shape[1]):
+            factor = A[i, k]
+            if factor != 0.0:
+                for j in range(B.shape[1]):
+                    out[i, j] += factor * B[k, j]
+    return out
+
+
+@exact_inner
+def _covariance_of(HP: Array, H: Array, N: Array) -> Array:
+    """S = H P H^T + N, (m, m), of H P."""
+    m = N.shape[0]
+    S = np.empty((m, m))
+    for i in range(m):
+        for j in range(m):
+            total = N[i, j]
+            for k in range(SIZE):
+                if H[j, k] != 0.0:
+                    total += HP[i, k] * H[j, k]
+            S[i, j] = total
+    return S
+
+
+@exact_inner
+def inverse(S: Array) -> Array:
+    """Of a small symmetric positive definite matrix, by elimination."""
+    m = S.shape[0]
+    left, out = S.copy(), np.zeros((m, m))
+    for i in range(m):
+        out[i, i] = 1.0
+    for i in range(m):
+        pivot = 1.0 / left[i, i]
+        for k in range(m):
+            left[i, k] *= pivot
+            out[i, k] *= pivot
+        for row in range(m):
+            factor = left[row, i]
+            if row != i and factor != 0.0:
+                for k in range(m):
+                    left[row, k] -= factor * left[i, k]
+                    out[row, k] -= factor * out[i, k]
+    return out
+
+
+@exact_inner
+def _squared(residual: Array, weights: Array) -> float:
+    total = 0.0
+    for i in range(weights.shape[0]):
+        for j in range(weights.shape[0]):
+            total += residual[i] * weights[i, j] * residual[j]
+    return total
+
+
+@exact_inner
+def _weighted(residual: Array, gain: Array) -> Array:
+    """K r (SIZE,), with the gain's transpose (m, SIZE)."""
+    e = np.zeros(SIZE)
+    for i in range(gain.shape[0]):
+        for k in range(SIZE):
+            e[k] += residual[i] * gain[i, k]
+    return e
+
+
+@exact_inner
+def _keep_innovation(innovation: Array, residual: Array, N: Array, S: Array) -> None:
+    for i in range(WIDEST):
+        for j in range(3):
+            innovation[j, i] = 0.0
+        if i < N.shape[0]:
+            innovation[0, i] = residual[i]
+            innovation[1, i] = np.sqrt(N[i, i])
+            innovation[2, i] = np.sqrt(S[i, i])
+
+
+@exact_inner
+def _of_known_mounting(P: Array, HP: Array) -> Array:
+    """H P (m, SIZE) by the covariance of all else, given the DVL's misalignment m.
+
+    P_x - P_xm P_mm^-1 P_mx; the misalignment itself is left as it is.
+    """
+    first = DVL_MISALIGNMENT
+    within = np.empty((3, 3))
+    for i in range(3):
+        for j in range(3):
+            within[i, j] = P[first + i, first + j]
+        within[i, i] += TINY
+    weights = inverse(within)
+    known = HP.copy()
+    for row in range(HP.shape[0]):
+        for i in range(3):
+            told = 0.0
+            for k in range(3):
+                told += weights[i, k] * HP[row, first + k]
+            if told != 0.0:
+                for j in range(SIZE):
+                    known[row, j] -= told * P[first + i, j]
+        for i in range(3):
+            known[row, first + i] = 0.0
+    return known
+
+
+@exact_inner
+def linearization_point(
+    state: NavigationState, H: Array, residual: Array, N: Array
+) -> tuple[NavigationState, Array]:
+    """The state (+) K r, with arrays of its own, and K r: where an iterated filter linearizes.
+
+    Jazwinski, *Stochastic Processes and Filtering Theory* (1970), sec. 8.3.
+    """
+    HP = _rows(H, state.covariance)
+    e = _weighted(residual, _rows(inverse(_covariance_of(HP, H, N)), HP))
+    point = NavigationState(
+        state.position.copy(),
+        state.velocity.copy(),
+        state.quaternion.copy(),
+        state.gyro_bias.copy(),
+        state.accelerometer_bias.copy(),
+        state.compass_bias.copy(),
+        state.further.copy(),
+        state.covariance,
+        state.innovation,
+    )
+    _add_error(point, e)
+    return point, e
+
+
+@exact_inner
+def _correct_covariance(P: Array, gain: Array, H: Array, HP: Array, N: Array) -> None:
+    """(I - K H) P (I - K H)^T + K N K^T, first from the left, then from the right.
+
+    `gain` is the transpose of K, (m, SIZE). The right side takes the matrix that the left one has
+    left, which keeps what it has gained in precision.
+    """
+    m = N.shape[0]
     for i in range(SIZE):
-        for j in range(SIZE):
-            left[i, j] = (1.0 if i == j else 0.0) - left[i, j]
-    kept = (left @ P) @ transposed(left)
-    added = (K @ N) @ transposed(K)
+        for a in range(m):
+            factor = gain[a, i]
+            if factor != 0.0:
+                for j in range(SIZE):
+                    P[i, j] -= factor * HP[a, j]
+    right = np.zeros(m)
     for i in range(SIZE):
-        for j in range(i + 1):
-            mean = 0.5 * ((kept[i, j] + added[i, j]) + (kept[j, i] + added[j, i]))
-            P[i, j] = mean
-            P[j, i] = mean
+        for a in range(m):
+            total = 0.0
+            for k in range(SIZE):
+                if H[a, k] != 0.0:
+                    total += P[i, k] * H[a, k]
+            right[a] = -total
+        for a in range(m):
+            for b in range(m):
+                right[a] += gain[b, i] * N[b, a]
+        for a in range(m):
+            for j in range(i + 1):
+                P[i, j] += right[a] * gain[a, j]
+    for i in range(SIZE):
+        for j in range(i):
+            P[j, i] = P[i, j]
 
 
 @exact_inner
@@ -70,7 +241,7 @@ def _add_error(state: NavigationState, e: Array) -> None:
         state.gyro_bias[i] += e[9 + i]
         state.accelerometer_bias[i] += e[12 + i]
         state.compass_bias[i] += e[15 + i]
-    for i in range(2):
-        state.instrument_bias[i] += e[18 + i]
+    for i in range(SIZE - FURTHER):
+        state.further[i] += e[FURTHER + i]
     for i in range(4):
         state.quaternion[i] = turned[i] / length

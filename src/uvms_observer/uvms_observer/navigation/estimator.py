@@ -8,11 +8,14 @@ import numpy as np
 
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
+from uvms_observer.navigation import undecided
 from uvms_observer.navigation.alignment import aligned
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
-from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
+from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
+from uvms_observer.navigation.innovation_gate import InnovationGate, Tally, accepted
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.imu import Gyrocompass
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
@@ -25,6 +28,7 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
+from uvms_observer.navigation.undecided import Doubt
 from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
 
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
@@ -39,19 +43,27 @@ class Estimator:
         imu: the inertial unit.
         measurements: of all sensors, by name; the gyrocompass of the inertial unit is one of them.
         config: start and gates.
+        periods: between two samples of each, s.
     """
 
     def __init__(
-        self, imu: Installation, measurements: Mapping[str, Measurement], config: NavigationConfig
+        self,
+        imu: Installation,
+        measurements: Mapping[str, Measurement],
+        config: NavigationConfig,
+        periods: Mapping[str, float],
     ) -> None:
         self._imu = imu
+        compass = measurements[INERTIAL.name]
+        self._compass = compass if type(compass) is Gyrocompass else None
         self._measurements = measurements
         self._config = config
         self._gates = {
-            name: InnovationGate(each.size, config.gate_probability)
+            name: InnovationGate(each.size, config.gate_probability, periods[name])
             for name, each in measurements.items()
         }
         self.tallies = dict.fromkeys(measurements, Tally())
+        self._doubts: dict[str, Doubt] = {}  # of the sensors whose last sample was rejected
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
@@ -66,6 +78,7 @@ class Estimator:
         other = copy(self)
         other.state = self.state.copied()
         other.tallies = dict(self.tallies)
+        other._doubts = dict(self._doubts)
         return other
 
     def take(self, reading: Reading) -> None:
@@ -75,8 +88,9 @@ class Estimator:
             if inertial:
                 self._align(reading.sample)
         elif inertial:
-            self._carry(reading.sample)
-            self._correct(reading)
+            if not self._take_at_once(reading):
+                self._carry(reading.sample)
+                self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
             self._correct(reading)
@@ -87,8 +101,12 @@ class Estimator:
 
     def odometry(self) -> Odometry:
         """The estimate at the body origin, at the present time."""
-        imu = self._imu
-        return odometry(self.time or 0, self.state, imu.body, self._rate, imu.rate_variance)
+        imu, state = self._imu, self.state
+        if self._doubts:
+            open_ones = [(each, self.tallies[name]) for name, each in self._doubts.items()]
+            wider = undecided.widened(state.covariance, open_ones, self.time or 0)
+            state = state if wider is None else state._replace(covariance=wider)
+        return odometry(self.time or 0, state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
         self.state = aligned(sample, self._imu, self._config, self.start)
@@ -99,9 +117,39 @@ class Estimator:
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
         self._memory = remember(self._rate, self._force)
 
+    def _take_at_once(self, reading: Reading) -> bool:
+        """Carry and correct in the usual case; False, and nothing done, where it is another."""
+        tally, compass, imu = self.tallies[reading.name], self._compass, self._imu
+        gone = to_seconds(reading.stamp - self._inertial)
+        if compass is None or tally.row or self._memory.row or gone > GAP * imu.period:
+            return False
+        sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
+        rate_limit, force_limit = self._screen.limits(gone)
+        rate, force = sample.angular_velocity, sample.linear_acceleration
+        distance, mean = take_inertial(
+            tuple(self.state),
+            *(self._rate, rate, rate_limit),
+            *(self._force, force, force_limit),
+            to_seconds(reading.stamp - time),
+            imu.gravity,
+            *imu.process,
+            *(sample.quaternion, compass.variance, gate.limit, tally.mean, gate.keep),
+        )
+        if distance == UNUSUAL:
+            return False
+        self.time, self._inertial = max(time, reading.stamp), reading.stamp
+        self._rate, self._force = rate, force
+        if distance <= gate.limit:
+            self.tallies[reading.name] = accepted(tally, reading.stamp, distance, mean)
+        else:
+            self._reject(reading, gate.rejected(tally, reading.stamp, self.state.innovation))
+        return True
+
     def _carry(self, sample: ImuSample) -> None:
         """With the readings at both ends of the interval: second order in its length."""
         dt = to_seconds(sample.stamp - self._inertial)
+        if not self._memory.row:
+            self._memory = remember(self._rate, self._force, self._memory.held)
         screened, self._memory = self._screen.judge(
             self._memory, sample.angular_velocity, sample.linear_acceleration, dt
         )
@@ -127,10 +175,10 @@ class Estimator:
             unknown = gap_spread(to_seconds(begin - self._inertial), gone, imu.gravity)
             spread(tuple(self.state), *unknown, dt)
 
-    def doubt_imu(self) -> None:
-        """Take the inertial biases to be unknown from now on."""
+    def doubt_imu(self, times: float = 1.0) -> None:
+        """Take the inertial biases to be unknown from now on, by so many times the usual fault."""
         P = self.state.covariance
-        P[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(self._imu.faulty_bias_variance)
+        P[INERTIAL_BIASES, INERTIAL_BIASES] += times**2 * np.diag(self._imu.faulty_bias_variance)
 
     def doubt_velocity(self) -> None:
         """Take the velocity to be unknown now."""
@@ -156,4 +204,18 @@ class Estimator:
         name = reading.name
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._rate)
-        self.tallies[name] = self._gates[name].apply(self.tallies[name], reading.stamp, correct)
+        tally = self._gates[name].apply(
+            self.tallies[name], reading.stamp, correct, self.state.innovation
+        )
+        if tally.row:
+            self._reject(reading, tally)
+        else:
+            self.tallies[name] = tally
+            self._doubts.pop(name, None)
+
+    def _reject(self, reading: Reading, tally: Tally) -> None:
+        """Keep the tally of a sample that is not used, and what it would have changed."""
+        name, other = reading.name, undecided.believed(self.state)
+        self._measurements[name].correct(other, reading.sample, self._rate, np.inf)
+        before, self.tallies[name] = self._doubts.get(name), tally
+        self._doubts[name] = undecided.doubt(self.state, other, tally, before, reading.stamp)

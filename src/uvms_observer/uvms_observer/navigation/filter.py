@@ -49,11 +49,14 @@ class NavigationFilter:
         config = config or NavigationConfig()
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
-        self._estimator = Estimator(imu, self._instruments.measurements, config)
+        self._estimator = Estimator(
+            imu, self._instruments.measurements, config, self._instruments.periods
+        )
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
         self._steps: deque[Step] = deque()
         self._next_trial = 0  # ns
+        self._wait = suspicion.AGAIN  # ns, between two trials
         self._stamp = -1  # of the last step
         self._newest: dict[str, int] = {}  # stamp of the newest sample, by sensor
         self.rejected = 0
@@ -229,12 +232,15 @@ class NavigationFilter:
         """Whether the estimate is wrong, where a sensor is rejected."""
         if stamp < self._next_trial:
             return
-        self._next_trial = stamp + suspicion.AGAIN
         steps = list(self._steps)
-        for suspect in suspicion.suspects(steps, self._estimator, stamp):
+        suspects = suspicion.suspects(steps, self._estimator, stamp)
+        self._wait = min(2 * self._wait, suspicion.LONGEST) if suspects else suspicion.AGAIN
+        self._next_trial = stamp + self._wait
+        for suspect in suspects:
             found = suspicion.tried(steps, suspect, self._estimator)
             if found is not None:
                 steps, self._estimator = found
                 self._steps = deque(steps)
                 self.corrected += 1
+                self._wait = suspicion.AGAIN
                 return

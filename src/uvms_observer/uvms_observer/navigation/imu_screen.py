@@ -87,11 +87,14 @@ class ImuScreen:
         unknown = np.abs(turn), np.abs(change)
         return Screened(memory.rate, memory.force, *unknown, None, None), held
 
+    def limits(self, dt: float) -> tuple[float, float]:
+        """Largest changes along an axis of rate, rad/s, and force, m/s^2, that agree, dt s apart."""
+        return self._rate_jump + ANGULAR_JERK_RAD_S2 * dt, self._force_jump + JERK_M_S3 * dt
+
     def _agree(
         self, rate: Array, force: Array, new_rate: Array, new_force: Array, dt: float
     ) -> bool:
-        rate_limit = self._rate_jump + ANGULAR_JERK_RAD_S2 * dt
-        force_limit = self._force_jump + JERK_M_S3 * dt
+        rate_limit, force_limit = self.limits(dt)
         return bool(
             max(abs(new_rate - rate)) <= rate_limit and max(abs(new_force - force)) <= force_limit
         )

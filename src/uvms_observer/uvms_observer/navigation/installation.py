@@ -8,6 +8,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
+from uvms_observer.navigation.state import COMPASS_BIAS, CURRENT, INERTIAL_BIASES, SIZE
 
 FAULTY_GYRO_DEG_S = 1.0
 """Std of the bias of a gyro that something has happened to."""
@@ -62,14 +63,20 @@ def _process_noise(vehicle: Vehicle, config: NavigationConfig) -> ProcessNoise:
     imu = vehicle.sensors.imu
     gyro = np.radians(imu.gyro_noise_deg_s) * config.gyro_noise_scale
     accelerometer = imu.accelerometer_noise_m_s2 * config.accelerometer_noise_scale
-    biases = [
+    biases = np.zeros(SIZE)
+    biases[INERTIAL_BIASES] = [
         *np.radians([imu.gyro_bias_deg_s] * 3),
         *[imu.accelerometer_bias_m_s2] * 3,
-        *np.radians([imu.roll_pitch_bias_deg, imu.roll_pitch_bias_deg, imu.heading_bias_deg]),
     ]
+    tilt = imu.roll_pitch_bias_deg
+    biases[COMPASS_BIAS] = np.radians([tilt, tilt, imu.heading_bias_deg])
+    biases[CURRENT:] = config.current_std_m_s
+    decay = np.zeros(SIZE)
+    decay[INERTIAL_BIASES] = decay[COMPASS_BIAS] = 1.0 / imu.bias_time_constant_s
+    decay[CURRENT:] = 1.0 / config.current_time_constant_s
     return ProcessNoise(
         gyro=float(gyro**2 / imu.rate_hz),
         accelerometer=float(accelerometer**2 / imu.rate_hz),
-        bias_variance=np.array(biases) ** 2,
-        bias_time_constant=float(imu.bias_time_constant_s),
+        variance=np.square(biases[9:]),
+        decay=decay[9:].copy(),
     )

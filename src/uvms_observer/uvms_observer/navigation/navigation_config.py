@@ -17,6 +17,12 @@ class NoiseFloor(Config):
     attitude_deg: float = Field(0.001, gt=0.0, description="roll, pitch and heading, deg")
     velocity_m_s: float = Field(1e-4, gt=0.0, description="DVL, m/s")
     depth_m: float = Field(1e-4, gt=0.0, description="pressure sensor, m of water")
+    misalignment_deg: float = Field(
+        0.5,
+        gt=0.0,
+        description="mounting of the DVL about each axis, deg: what hands and a tape measure leave"
+        " where it has not been calibrated",
+    )
     position_m: float = Field(1e-2, gt=0.0, description="GPS, m")
     fix_m: float = Field(1e-3, gt=0.0, description="position fix under water, m")
 
@@ -50,6 +56,12 @@ class NavigationConfig(PluginConfig, StartConfig):
     )
     accelerometer_noise_scale: float = Field(
         1.0, gt=0.0, le=1000.0, description="factor on the accelerometer noise of the vehicle file"
+    )
+    current_std_m_s: float = Field(
+        0.3, gt=0.0, description="std of the water current north and east, m/s"
+    )
+    current_time_constant_s: float = Field(
+        600.0, gt=0.0, description="correlation time of the water current, s"
     )
     latency_s: float = Field(
         0.25,

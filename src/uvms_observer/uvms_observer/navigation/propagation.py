@@ -3,7 +3,9 @@
 Nominal state, with mean rate w = w_m - b_g and mean specific force f = f_m - b_a of the interval:
 
     R_mid = R Exp(w dt/2),  a = R_mid f + g e_z,
-    p += v dt + a dt^2/2,   v += a dt,   R <- R Exp(w dt),   b <- phi b  (gyro, acc., compass).
+    p += v dt + a dt^2/2,   v += a dt,   R <- R Exp(w dt),   b <- phi b,
+
+with phi = exp(-dt / T) for each bias and for the current.
 
 Error state (derivation: docs/navigation.md), with A = [R_mid f]x:
 
@@ -22,7 +24,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
-from uvms_observer.navigation.state import SIZE, Fields, NavigationState
+from uvms_observer.navigation.state import FURTHER, SIZE, Fields, NavigationState
 
 BEYOND = 5.0
 
@@ -32,8 +34,9 @@ class ProcessNoise(NamedTuple):
 
     gyro: float  # rad^2/s, spectral density of the rate's white noise
     accelerometer: float  # m^2/s^3, of the specific force's
-    bias_variance: Array  # (9,) stationary variances of gyro, accelerometer and compass biases
-    bias_time_constant: float  # s, of these first-order Gauss-Markov biases
+    variance: Array  # (SIZE - 9,) stationary, of the states after the attitude, each of which is
+    # first-order Gauss-Markov
+    decay: Array  # (SIZE - 9,) 1/s, inverse of their time constants; 0 of one that is constant
 
 
 @exact_kernel
@@ -47,8 +50,8 @@ def propagate(
     gravity: float,
     gyro: float,
     accelerometer: float,
-    bias_variance: Array,
-    bias_time_constant: float,
+    variance: Array,
+    decay: Array,
 ) -> None:
     """Advance the state in place by dt, with the mean of the readings at both ends.
 
@@ -61,7 +64,7 @@ def propagate(
         force_before, force: the accelerometer's, (3,) m/s^2, body.
         dt: length of the interval, s.
         gravity: m/s^2, down.
-        gyro, accelerometer, bias_variance, bias_time_constant: see `ProcessNoise`.
+        gyro, accelerometer, variance, decay: see `ProcessNoise`.
     """
     state = NavigationState(*fields)
     turn = np.empty(3)  # in the first half of the interval
@@ -75,11 +78,13 @@ def propagate(
         for k in range(3):
             mean = 0.5 * (force_before[k] + force[k])
             thrust[i] += R[i, k] * (mean - state.accelerometer_bias[k])
-    phi = np.exp(-dt / bias_time_constant)
+    phi = np.empty(SIZE - 9)
+    for i in range(SIZE - 9):
+        phi[i] = np.exp(-dt * decay[i])
     _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity)
-    _decay_biases(state, bias_variance, phi)
+    _decay(state, variance, phi)
     _advance_covariance(state.covariance, R, thrust, dt, phi)
-    _add_noise(state.covariance, dt, phi, gyro, accelerometer, bias_variance)
+    _add_noise(state.covariance, dt, phi, gyro, accelerometer, variance)
 
 
 @exact_inner
@@ -100,26 +105,27 @@ def _advance_mean(
 
 
 @exact_inner
-def _decay_biases(state: NavigationState, variance: Array, phi: float) -> None:
-    """Gauss-Markov; a bias beyond `BEYOND` of its deviations has stepped, and stays."""
+def _decay(state: NavigationState, variance: Array, phi: Array) -> None:
+    """Gauss-Markov; an inertial bias beyond `BEYOND` of its deviations has stepped, and stays."""
     for i in range(3):
         if state.gyro_bias[i] ** 2 < BEYOND**2 * variance[i]:
-            state.gyro_bias[i] *= phi
+            state.gyro_bias[i] *= phi[i]
         if state.accelerometer_bias[i] ** 2 < BEYOND**2 * variance[3 + i]:
-            state.accelerometer_bias[i] *= phi
-        state.compass_bias[i] *= phi
+            state.accelerometer_bias[i] *= phi[3 + i]
+        state.compass_bias[i] *= phi[6 + i]
+    for i in range(SIZE - FURTHER):
+        state.further[i] *= phi[9 + i]
 
 
 @exact_inner
-def _advance_covariance(P: Array, R: Array, thrust: Array, dt: float, phi: float) -> None:
-    """P <- F P F^T: F on every row of the symmetric P, then on every row of the transpose."""
-    for i in range(SIZE):
-        _transition(P[i], R, thrust, dt, phi)
+def _advance_covariance(P: Array, R: Array, thrust: Array, dt: float, phi: Array) -> None:
+    """P <- F P F^T: F on the columns of the symmetric P, then on those of the transpose."""
+    work = np.empty((3, 3, SIZE))
+    _transition(P, R, thrust, dt, phi, work)
     for i in range(SIZE):
         for j in range(i):
             P[i, j], P[j, i] = P[j, i], P[i, j]
-    for i in range(SIZE):
-        _transition(P[i], R, thrust, dt, phi)
+    _transition(P, R, thrust, dt, phi, work)
     for i in range(SIZE):
         for j in range(i):
             mean = 0.5 * (P[i, j] + P[j, i])
@@ -129,7 +135,7 @@ def _advance_covariance(P: Array, R: Array, thrust: Array, dt: float, phi: float
 
 @exact_inner
 def _add_noise(
-    P: Array, dt: float, phi: float, gyro: float, accelerometer: float, bias_variance: Array
+    P: Array, dt: float, phi: Array, gyro: float, accelerometer: float, variance: Array
 ) -> None:
     """P <- P + Q."""
     for i in range(3):
@@ -138,30 +144,34 @@ def _add_noise(
         P[3 + i, i] += 0.5 * accelerometer * dt**2
         P[3 + i, 3 + i] += accelerometer * dt
         P[6 + i, 6 + i] += gyro * dt
-    for i in range(9):
-        P[9 + i, 9 + i] += (1.0 - phi * phi) * bias_variance[i]
+    for i in range(SIZE - 9):
+        P[9 + i, 9 + i] += (1.0 - phi[i] * phi[i]) * variance[i]
 
 
 @exact_inner
-def _transition(e: Array, R: Array, thrust: Array, dt: float, phi: float) -> None:
-    """Carry one error state (20,) over the interval in place, e <- F e."""
-    g0 = R[0, 0] * e[9] + R[0, 1] * e[10] + R[0, 2] * e[11]  # gyro bias in the world
-    g1 = R[1, 0] * e[9] + R[1, 1] * e[10] + R[1, 2] * e[11]
-    g2 = R[2, 0] * e[9] + R[2, 1] * e[10] + R[2, 2] * e[11]
+def _transition(E: Array, R: Array, thrust: Array, dt: float, phi: Array, work: Array) -> None:
+    """Carry error states over the interval in place, E <- F E: one in each of SIZE columns.
+
+    Row by row, which numba makes vector instructions of.
+    """
+    gyro, middle, a = work[0], work[1], work[2]
+    for i in range(3):
+        for j in range(SIZE):  # the biases in the world; what the accelerometer's makes
+            gyro[i, j] = R[i, 0] * E[9, j] + R[i, 1] * E[10, j] + R[i, 2] * E[11, j]
+            a[i, j] = -(R[i, 0] * E[12, j] + R[i, 1] * E[13, j] + R[i, 2] * E[14, j])
+        for j in range(SIZE):
+            middle[i, j] = E[6 + i, j] - 0.5 * dt * gyro[i, j]
     # the attitude error in the middle of the interval turns the specific force
-    v0, v1, v2 = e[6] - 0.5 * dt * g0, e[7] - 0.5 * dt * g1, e[8] - 0.5 * dt * g2
-    f0, f1, f2 = thrust[0], thrust[1], thrust[2]
-    a0 = v1 * f2 - v2 * f1 - (R[0, 0] * e[12] + R[0, 1] * e[13] + R[0, 2] * e[14])
-    a1 = v2 * f0 - v0 * f2 - (R[1, 0] * e[12] + R[1, 1] * e[13] + R[1, 2] * e[14])
-    a2 = v0 * f1 - v1 * f0 - (R[2, 0] * e[12] + R[2, 1] * e[13] + R[2, 2] * e[14])
-    e[0] += (e[3] + 0.5 * dt * a0) * dt
-    e[1] += (e[4] + 0.5 * dt * a1) * dt
-    e[2] += (e[5] + 0.5 * dt * a2) * dt
-    e[3] += a0 * dt
-    e[4] += a1 * dt
-    e[5] += a2 * dt
-    e[6] -= g0 * dt
-    e[7] -= g1 * dt
-    e[8] -= g2 * dt
-    for i in range(9, 18):
-        e[i] *= phi
+    for i in range(3):
+        k, m = (i + 1) % 3, (i + 2) % 3
+        for j in range(SIZE):
+            a[i, j] += middle[k, j] * thrust[m] - middle[m, j] * thrust[k]
+    for i in range(3):
+        for j in range(SIZE):
+            E[i, j] += (E[3 + i, j] + 0.5 * dt * a[i, j]) * dt
+            E[3 + i, j] += a[i, j] * dt
+            E[6 + i, j] -= gyro[i, j] * dt
+    for i in range(SIZE - 9):
+        if phi[i] != 1.0:
+            for j in range(SIZE):
+                E[9 + i, j] *= phi[i]

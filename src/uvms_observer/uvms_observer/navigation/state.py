@@ -1,17 +1,20 @@
 """The filter's state: the nominal state and the covariance of its error.
 
-The error state e (20,) is, with truth = estimate (+) error,
+The error state e (SIZE,) is, with truth = estimate (+) error,
 
-    e = (dp, dv, dtheta, db_g, db_a, db_c, ds, db_p):  R = Exp(dtheta) R_hat,  all else additive.
+    e = (dp, dv, dtheta, db_g, db_a, db_c, ds, db_p, dm, dc):  R = Exp(dtheta) R_hat,
+    all else additive.
 
 dp, dv and dtheta are in the axes of map_ned. The point whose position and velocity are estimated is
 the IMU, where its accelerometers measure, so that no angular acceleration is needed; the pose of
 the body origin follows from the mounting position.
 
-The last eight are sensor errors that do not average out. Most of them cannot be distinguished from
-the motion (a heading bias from a drift, for example); as states they are part of the covariance.
+The biases are sensor errors that do not average out. Most of them cannot be distinguished from the
+motion (a heading bias from a drift, for example); as states they are part of the covariance.
 
-SIZE is compiled into the numba kernels of this package.
+A further state is one more line below, and its starting variance (`alignment.py`, or
+`Measurement.initial_variance`); it is constant unless `propagation.py` says otherwise. Kernels take
+places from here by name. SIZE is compiled into them.
 """
 
 from typing import NamedTuple
@@ -27,9 +30,16 @@ GYRO_BIAS = slice(9, 12)
 ACCELEROMETER_BIAS = slice(12, 15)
 INERTIAL_BIASES = slice(9, 15)
 COMPASS_BIAS = slice(15, 18)
-DVL_SCALE = 18
-DEPTH_BIAS = 19
-SIZE = 20
+
+FURTHER = COMPASS_BIAS.stop
+"""First of the states that only single sensors read: `NavigationState.further`."""
+DVL_SCALE = FURTHER
+DEPTH_BIAS = DVL_SCALE + 1
+DVL_MISALIGNMENT = DEPTH_BIAS + 1  # of three
+CURRENT = DVL_MISALIGNMENT + 3  # of two
+SIZE = CURRENT + 2
+WIDEST = 6
+"""Largest dimension of a measurement."""
 
 
 class NavigationState(NamedTuple):
@@ -45,8 +55,11 @@ class NavigationState(NamedTuple):
     gyro_bias: Array  # (3,) rad/s, body axes
     accelerometer_bias: Array  # (3,) m/s^2, body axes
     compass_bias: Array  # (3,) rad, of the gyrocompass, a turn about the body axes
-    instrument_bias: Array  # (2,) scale error of the DVL, and bias of the depth in m
-    covariance: Array  # (20, 20) of the error state
+    further: Array  # (SIZE - FURTHER,) as in the error state: scale error of the DVL; bias of the
+    # depth, m; misalignment of the DVL, rad, a turn about the body axes; current, m/s, map_ned
+    covariance: Array  # (SIZE, SIZE) of the error state
+    innovation: Array  # (3, WIDEST) of the last measurement: residual, std of its noise, its own
+    # std; zeros beyond its size
 
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""
@@ -66,6 +79,7 @@ def empty_state() -> NavigationState:
         np.zeros(3),
         np.zeros(3),
         np.zeros(3),
-        np.zeros(2),
+        np.zeros(SIZE - FURTHER),
         np.zeros((SIZE, SIZE)),
+        np.zeros((3, WIDEST)),
     )

@@ -15,24 +15,34 @@ Multiple hypotheses: Bar-Shalom, Li and Kirubarajan (2001), sec. 11.6.
 
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from functools import partial
 
 from uvms_core.signals import to_nanoseconds
 from uvms_observer.navigation.estimator import Estimator
-from uvms_observer.navigation.innovation_gate import quantile
+from uvms_observer.navigation.innovation_gate import FEW, WINDOW_S, quantile
 from uvms_observer.navigation.time_line import Step, replayed
 
 BEFORE = [to_nanoseconds(seconds) for seconds in (0.0, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0)]
 """When something happened: so long before the last sample that was used."""
-PATIENCE = to_nanoseconds(1.0)
+PATIENCE = to_nanoseconds(0.5)
 """How long a sensor must have been rejected."""
-AGAIN = to_nanoseconds(1.0)
-"""Between two trials."""
+AGAIN = to_nanoseconds(0.25)
+"""From one look to the next. After a trial that explained nothing it is twice as long each time."""
+LONGEST = to_nanoseconds(4.0)
+"""Between two trials: each takes what a second of samples takes."""
+WINDOW = to_nanoseconds(WINDOW_S)
+"""Over which the residuals of a sensor that is used are looked at."""
 ABSENT = to_nanoseconds(20.0)
 """A sensor that has said nothing for so long knows better than what was reckoned meanwhile."""
-FEW = 8
-"""Samples of which a sum says something."""
 IMPOSSIBLE = 1.0 - 1e-8
-"""Share of right filters whose residuals add up to less within `PATIENCE`."""
+"""Share of right filters whose residuals add up to less within `WINDOW`."""
+BIASED = 6.0
+"""Standard deviations that the running mean of residuals is off zero: those of a right filter are
+white, whatever their size."""
+BROKEN = 10.0
+"""Times the biases that a fault of an inertial unit usually leaves: of a worse fault."""
+NEXT = 4
+"""Of the begins, the latest ones, at which such a fault is looked for: it shows at once."""
 LIKELY = 0.999
 """Share of right explanations whose residuals are as small as those of the trial must be."""
 MISSED = 0.01
@@ -66,15 +76,17 @@ def suspects(steps: Sequence[Step], estimator: Estimator, stamp: int) -> list[Su
 
 def _does_not_fit(name: str, steps: Sequence[Step], estimator: Estimator, stamp: int) -> int | None:
     """Since when (ns) the samples of a sensor that is used are too far off together."""
-    index = _last_before(steps, stamp - PATIENCE)
+    last = estimator.tallies[name]
+    index = _last_before(steps, stamp - WINDOW) if last.accepted >= FEW else -1
     if index < 0 or steps[index].begin < 0:
         return None
-    first, last = steps[index].before.tallies[name], estimator.tallies[name]
+    first = steps[index].before.tallies[name]
     taken = last.accepted - first.accepted
     if taken < FEW:
         return None
     limit = quantile(taken * estimator.size_of(name), IMPOSSIBLE)
-    return steps[index].begin if last.distance - first.distance > limit else None
+    is_biased = max(abs(last.mean)) > BIASED
+    return steps[index].begin if is_biased or last.distance - first.distance > limit else None
 
 
 def tried(steps: Sequence[Step], suspect: Suspect, now: Estimator) -> Trial | None:
@@ -94,12 +106,17 @@ def _explanations(steps: Sequence[Step], suspect: Suspect) -> list[tuple[int, Do
         begin = max(0, _last_before(steps, since))
         return [(begin, Estimator.doubt_velocity), (begin, Estimator.doubt_place)]
     begins = {_last_before(steps, used - before) for before in BEFORE} - {-1}
-    return [(begin, Estimator.doubt_imu) for begin in sorted(begins, reverse=True)]
+    latest = sorted(begins, reverse=True)
+    broken = partial(Estimator.doubt_imu, times=BROKEN)
+    return [
+        *((begin, Estimator.doubt_imu) for begin in latest),
+        *((begin, broken) for begin in latest[:NEXT]),
+    ]
 
 
 def _last_before(steps: Sequence[Step], time: int) -> int:
     """Index of the last step that begins at `time` (ns) or before; -1 where none does."""
-    return max((k for k, step in enumerate(steps) if step.begin <= time), default=-1)
+    return next((k for k in range(len(steps) - 1, -1, -1) if steps[k].begin <= time), -1)
 
 
 def _tried_from(

@@ -1,4 +1,4 @@
-"""The Doppler velocity log: velocity of its transducer over ground."""
+"""The Doppler velocity log: velocity of its transducer over ground, or through the water."""
 
 import numpy as np
 
@@ -8,15 +8,32 @@ from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
-from uvms_observer.navigation.correction import correct
+from uvms_observer.navigation.correction import correct, linearization_point
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.state import DVL_SCALE, SIZE, Fields, NavigationState
+from uvms_observer.navigation.state import (
+    CURRENT,
+    DVL_MISALIGNMENT,
+    DVL_SCALE,
+    FURTHER,
+    SIZE,
+    Fields,
+    NavigationState,
+)
+
+WATER_NOISE_M_S = 0.03
+"""Std of the water's own motion in the layer that a sample looks into, m/s: waves, turbulence."""
+
+LOOSE = 5.0
+"""Velocity's std in those of the noise from which on a sample is linearized twice."""
 
 
 class DvlVelocity(Measurement):
-    """(1 + s) (R^T v + w x d) + n, with the scale error s in the state."""
+    """(1 + s) (1 - [m]x) (R^T (v - c) + w x d) + n, with scale error s and misalignment m.
+
+    The current c is 0 for a sample with bottom lock.
+    """
 
     size = 3
 
@@ -24,33 +41,80 @@ class DvlVelocity(Measurement):
         super().__init__(vehicle, section, config)
         self._variance = max(section.noise_m_s, config.noise_floor.velocity_m_s) ** 2
         self._rate_variance = rate_variance(vehicle)
-        self.initial_variance = {DVL_SCALE: float(np.square(section.scale_error))}
+        mounting = np.radians(max(section.misalignment_deg, config.noise_floor.misalignment_deg))
+        self.initial_variance = {
+            DVL_SCALE: float(np.square(section.scale_error)),
+            **dict.fromkeys(range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3), float(mounting**2)),
+        }
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
-        noise, fields = self._rate_variance, tuple(state)
-        return correct_velocity(
-            fields, sample.velocity, self._variance, self.lever, rate, noise, gate
-        )
+        in_water = sample.lock == "water"
+        variance = self._variance + (WATER_NOISE_M_S**2 if in_water else 0.0)
+        turning = self.lever, rate, self._rate_variance
+        return correct_velocity(tuple(state), sample.velocity, variance, *turning, in_water, gate)
 
 
 @exact_inner
-def velocity(state: NavigationState, lever: Array, rate: Array) -> tuple[Array, Array]:
-    """Velocity that the DVL should read (3,) m/s, body axes, and H."""
+def velocity(
+    state: NavigationState, lever: Array, rate: Array, in_water: bool
+) -> tuple[Array, Array]:
+    """Velocity that the DVL should read (3,) m/s, its own axes, and H."""
     R = quat_to_matrix(state.quaternion)
-    arm, turned = skew(lever), R.T @ skew(state.velocity)
-    reading, swing = R.T @ state.velocity, arm @ body_rate(state, rate)
-    scale = 1.0 + state.instrument_bias[0]
+    over = state.velocity.copy()
+    if in_water:
+        for i in range(2):
+            over[i] -= state.further[CURRENT - FURTHER + i]
+    mount = _mount(state)
+    axes, arm = mount @ transposed(R), mount @ skew(lever)
+    reading, turned = axes @ over, axes @ skew(over)
+    swing, motion = arm @ body_rate(state, rate), _motion(R, over, lever, state, rate)
+    cross = skew(motion)
+    scale = 1.0 + state.further[DVL_SCALE - FURTHER]
     H = np.zeros((3, SIZE))
     for i in range(3):
-        motion = reading[i] - swing[i]
         for k in range(3):
-            H[i, 3 + k] = scale * R[k, i]
+            H[i, 3 + k] = scale * axes[i, k]
             H[i, 6 + k] = scale * turned[i, k]
             H[i, 9 + k] = scale * arm[i, k]
-        H[i, 18] = motion
-        reading[i] = scale * motion
+            H[i, DVL_MISALIGNMENT + k] = scale * cross[i, k]
+        if in_water:
+            for k in range(2):
+                H[i, CURRENT + k] = -scale * axes[i, k]
+        H[i, DVL_SCALE] = reading[i] - swing[i]
+        reading[i] = scale * H[i, DVL_SCALE]
     return reading, H
+
+
+@exact_inner
+def _mount(state: NavigationState) -> Array:
+    """Body axes to the DVL's own, (3, 3): 1 - [m]x for the small misalignment m."""
+    m = np.empty(3)
+    for i in range(3):
+        m[i] = state.further[DVL_MISALIGNMENT - FURTHER + i]
+    mount = skew(m)
+    for i in range(3):
+        for k in range(3):
+            mount[i, k] = (1.0 if i == k else 0.0) - mount[i, k]
+    return mount
+
+
+@exact_inner
+def _motion(R: Array, over: Array, lever: Array, state: NavigationState, rate: Array) -> Array:
+    """Velocity of the transducer (3,) m/s, body axes."""
+    motion, swing = transposed(R) @ over, skew(lever) @ body_rate(state, rate)
+    for i in range(3):
+        motion[i] -= swing[i]
+    return motion
+
+
+@exact_inner
+def _is_loose(P: Array, variance: float) -> bool:
+    """Whether a sample may change the velocity so much that it must be linearized after that.
+
+    How misalignment and scale show in a sample is a matter of the velocity.
+    """
+    return P[3, 3] + P[4, 4] + P[5, 5] > 3.0 * LOOSE**2 * variance
 
 
 @exact_kernel
@@ -61,15 +125,23 @@ def correct_velocity(
     lever: Array,
     rate: Array,
     rate_variance: float,
+    in_water: bool,
     gate: float,
 ) -> float:
-    """DVL: velocity (3,) m/s in body axes; the gyro's noise enters by the lever arm."""
+    """DVL: velocity (3,) m/s in its own axes; the gyro's noise enters by the lever arm."""
     state = NavigationState(*fields)
-    residual, H = velocity(state, lever, rate)
+    residual, H = velocity(state, lever, rate, in_water)
     subtract_from(measured, residual)
     arm = skew(lever)
     N = arm @ transposed(arm)
     for i in range(3):
         for k in range(3):
             N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
+    if _is_loose(state.covariance, variance):
+        point, e = linearization_point(state, H, residual, N)
+        residual, H = velocity(point, lever, rate, in_water)
+        subtract_from(measured, residual)
+        moved = H @ e
+        for i in range(3):
+            residual[i] += moved[i]
     return correct(state, H, residual, N, gate)

@@ -29,11 +29,11 @@ class Gyrocompass(Measurement):
 
     def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
         super().__init__(vehicle, section, config)
-        self._variance = attitude_variance(vehicle, config)
+        self.variance = attitude_variance(vehicle, config)
 
     def correct(self, state: NavigationState, sample: ImuSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
-        return correct_attitude(tuple(state), sample.quaternion, self._variance, gate)
+        return correct_attitude(tuple(state), sample.quaternion, self.variance, gate)
 
 
 @exact_inner

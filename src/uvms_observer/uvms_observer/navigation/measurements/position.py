@@ -33,4 +33,4 @@ def correct_position(
     N = np.zeros((3, 3))
     for i in range(3):
         N[i, i] = variance[i]
-    return correct(state, H, residual, N, gate)
+    return correct(state, H, residual, N, gate, True)

@@ -10,7 +10,7 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
-from uvms_observer.navigation.state import DEPTH_BIAS, SIZE, Fields, NavigationState
+from uvms_observer.navigation.state import DEPTH_BIAS, FURTHER, SIZE, Fields, NavigationState
 
 
 class PressureDepth(Measurement):
@@ -42,9 +42,9 @@ def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     H[0, 2] = 1.0
     H[0, 6] = offset[1]
     H[0, 7] = -offset[0]
-    H[0, 19] = 1.0
+    H[0, DEPTH_BIAS] = 1.0
     reading = np.empty(1)
-    reading[0] = state.position[2] + offset[2] + state.instrument_bias[1]
+    reading[0] = state.position[2] + offset[2] + state.further[DEPTH_BIAS - FURTHER]
     return reading, H
 
 

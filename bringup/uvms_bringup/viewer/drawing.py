@@ -1,0 +1,112 @@
+"""Draws a scene with viser, and sends what has changed."""
+
+from typing import Any
+
+import numpy as np
+import viser
+
+from uvms_bringup.viewer.elements import Colour, Node, Place, Places
+from uvms_bringup.viewer.meshes import unit_mesh
+from uvms_core.signals import Array
+
+NO_LINE = np.zeros((1, 2, 3))
+
+
+class Drawing:
+    """The nodes of a scene in a viser scene; the third axis of the world points down.
+
+    Args:
+        scene: to draw into.
+        nodes: by name, parents before their children.
+    """
+
+    def __init__(self, scene: viser.SceneApi, nodes: dict[str, Node]) -> None:
+        self._scene = scene
+        scene.set_up_direction("-z")
+        self._handles = {name: self._add(node) for name, node in nodes.items()}
+        self._shown = {name: node.place for name, node in nodes.items()}
+        self._switched_off: set[str] = set()
+
+    def show(self, places: Places) -> None:
+        """Put nodes where they are now."""
+        for name, place in places.items():
+            before = self._shown[name]
+            if place is not before:
+                self._move(name, before, place)
+                self._shown[name] = place
+
+    def switch(self, names: list[str], on: bool) -> None:
+        """Show or hide nodes whatever their places say."""
+        for name in names:
+            (self._switched_off.discard if on else self._switched_off.add)(name)
+            self._handles[name].visible = on and self._shown[name].visible
+
+    def position_of(self, name: str) -> Array:
+        """Where the page has a node, (3,) m in its parent."""
+        return np.array(self._handles[name].position)
+
+    def _add(self, node: Node) -> Any:
+        name, place = f"/{node.name}", node.place
+        common: dict[str, Any] = {
+            "position": place.position,
+            "wxyz": _wxyz(place),
+            "visible": place.visible,
+        }
+        if node.look is None:
+            return self._scene.add_frame(name, show_axes=False, **common)
+        colour = _rgb(node.look.colour)
+        if node.look.kind == "line":
+            return self._scene.add_line_segments(
+                name, _segments(place), colour, thickness=float(place.size[0]), **common
+            )
+        vertices, faces = unit_mesh(node.look.kind)
+        opacity = None if node.look.opacity == 1.0 else node.look.opacity
+        handle = self._scene.add_mesh_simple(
+            name, vertices, faces, color=colour, opacity=opacity, scale=_scale(place),
+            cast_shadow=False, receive_shadow=False, **common,
+        )  # fmt: skip
+        if node.label:
+            self._scene.add_label(f"{name}/label", node.label)
+        return handle
+
+    def _move(self, name: str, before: Place, now: Place) -> None:
+        handle = self._handles[name]
+        if now.visible != before.visible:
+            handle.visible = now.visible and name not in self._switched_off
+        if not now.visible:
+            return
+        if not np.array_equal(now.position, before.position):
+            handle.position = now.position
+        if not np.array_equal(now.quaternion, before.quaternion):
+            handle.wxyz = _wxyz(now)
+        if now.points is not None:
+            if now.points is not before.points:
+                handle.points = _segments(now).astype(np.float32)
+            if now.size[0] != before.size[0]:
+                handle.thickness = float(now.size[0])
+        elif not np.array_equal(now.size, before.size):
+            handle.scale = _scale(now)
+        if now.colour is not None and now.colour != before.colour:
+            handle.color = _rgb(now.colour)
+
+
+def _wxyz(place: Place) -> Array:
+    return np.roll(place.quaternion, 1)
+
+
+def _rgb(colour: Colour) -> tuple[int, int, int]:
+    red, green, blue = (round(255 * part) for part in colour)
+    return red, green, blue
+
+
+def _scale(place: Place) -> tuple[float, float, float]:
+    x, y, z = place.size.tolist()
+    return x, y, z
+
+
+def _segments(place: Place) -> Array:
+    """(k - 1, 2, 3) m."""
+    points = place.points
+    if points is None or len(points) < 2:
+        return NO_LINE
+    return np.stack([points[:-1], points[1:]], axis=1)

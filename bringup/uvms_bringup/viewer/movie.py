@@ -1,0 +1,69 @@
+"""Movies of a run without browser: GIF, or MP4 by the ffmpeg that a package brings along."""
+
+from collections.abc import Iterator
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.log_source import LogSource
+from uvms_bringup.viewer.picture import picture
+from uvms_bringup.viewer.scene_model import SceneModel
+
+SIZE = (640, 360)
+RATES = {".gif": 10, ".mp4": 25}
+"""Frames a second by the file's suffix."""
+LONGEST_S = 10.0
+"""Of a movie for which no speed is asked: the run is played so much faster."""
+
+
+def write_movie(
+    source: LogSource,
+    file: str | Path,
+    preset: str,
+    span: tuple[float, float] | None = None,
+    speed: float | None = None,
+) -> Path:
+    """Draw a run, or a span of it in s, into a movie that plays `speed` times real time.
+
+    Raises:
+        LogError: the log cannot be read.
+        ViewError: the file cannot be written, or is neither GIF nor MP4.
+    """
+    path = Path(file)
+    if path.suffix not in RATES:
+        raise ViewError(f"{path}: a movie ends in one of {', '.join(RATES)}")
+    start, end = span or (source.start_s, source.end_s)
+    speed = max((end - start) / LONGEST_S, 1.0) if speed is None else speed
+    rate = RATES[path.suffix]
+    times = np.arange(start, end, speed / rate)
+    write = _write_gif if path.suffix == ".gif" else _write_mp4
+    try:
+        write(path, _frames(source, times, preset), rate)
+    except OSError as fault:
+        raise ViewError(f"{path}: cannot be written: {fault}") from fault
+    return path
+
+
+def _frames(source: LogSource, times: np.ndarray, preset: str) -> Iterator[Image.Image]:
+    model = SceneModel(source.setting)
+    for time in times:
+        yield picture(model, source.moment(float(time)), preset, source.name, SIZE)
+
+
+def _write_gif(path: Path, frames: Iterator[Image.Image], rate: int) -> None:
+    """With the colours of the first frame, so that nothing flickers."""
+    first = next(frames).quantize(128)
+    rest = (frame.quantize(palette=first, dither=Image.Dither.NONE) for frame in frames)
+    first.save(path, save_all=True, append_images=rest, duration=round(1000 / rate), loop=0)
+
+
+def _write_mp4(path: Path, frames: Iterator[Image.Image], rate: int) -> None:
+    from imageio_ffmpeg import write_frames
+
+    writer = write_frames(str(path), SIZE, fps=rate, macro_block_size=8, ffmpeg_log_level="error")
+    writer.send(None)
+    for frame in frames:
+        writer.send(np.ascontiguousarray(frame))
+    writer.close()
