@@ -36,9 +36,12 @@ def test_a_unit_taken_for_better_than_it_is_shows():
     """The same trial, its unit taken for a tactical one: the filter is wrong, and sure of it."""
     trial = read_trial(SHORT)
     honest = navigated_vehicle(str(VEHICLE), trial)
-    imu = honest.sensors.imu.model_copy(
-        update={"roll_pitch_bias_deg": 0.02, "accelerometer_bias_m_s2": 1e-3}
-    )
+    tactical = {
+        "roll_pitch_bias_deg": 0.02,
+        "accelerometer_bias_m_s2": 1e-3,
+        "bias_time_constant_s": 600.0,
+    }
+    imu = honest.sensors.imu.model_copy(update=tactical)
     sensors = honest.sensors.model_copy(update={"imu": imu})
     wrong = navigate(trial, honest.model_copy(update={"sensors": sensors}))
     right = navigate(trial, honest)
