@@ -37,7 +37,7 @@ def tool(monkeypatch):
     monkeypatch.syspath_prepend(str(TOOL))
     names = ("machine", "stamps", "stages")
     yield {name: __import__(name) for name in names}
-    for name in (*names, "commands", "workspace"):
+    for name in (*names, "chromium", "commands", "workspace"):
         sys.modules.pop(name, None)
 
 
@@ -126,5 +126,5 @@ def test_a_change_concerns_only_its_stages(tool, clone, change, stages):
 
 def test_the_stamp_of_this_environment_is_complete():
     stamp = json.loads((ROOT / ".venv" / "setup.json").read_text())
-    stages = {"environment", "runtime", "packages", "ros", "development", "interfaces"}
+    stages = {"environment", "runtime", "packages", "ros", "development", "browser", "interfaces"}
     assert set(stamp) == stages

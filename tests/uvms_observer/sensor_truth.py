@@ -86,6 +86,7 @@ class Rig:
     noise: float = 1.0
     bias: float = 1.0
     surface: bool = False
+    misalignment_deg: float = 0.0  # std of the DVL's mounting about each axis
     rng: np.random.Generator = field(init=False)
     biases: np.ndarray = field(init=False)  # gyro, accelerometer, compass; DVL scale, pressure
 
@@ -96,6 +97,8 @@ class Rig:
         tilt, heading = np.radians([imu.roll_pitch_bias_deg, imu.heading_bias_deg])
         sigmas = [np.radians(imu.gyro_bias_deg_s)] * 3 + [imu.accelerometer_bias_m_s2] * 3
         sigmas += [tilt, tilt, heading, sensors.dvl.scale_error, sensors.pressure.bias_pa]
+        turn = np.random.default_rng([self.seed, 7]).standard_normal(3)
+        self.mount = Rotation.from_rotvec(np.radians(self.misalignment_deg) * turn)
         self.biases = self.bias * np.array(sigmas) * self.rng.standard_normal(11)
 
     def white(self, sigma, *shape):
@@ -116,7 +119,9 @@ class Rig:
 
     def dvl(self, t):
         dvl = self.vehicle.sensors.dvl
-        read = (1.0 + self.biases[9]) * self.motion.velocity(t, dvl.position_m)
+        read = (1.0 + self.biases[9]) * self.mount.inv().apply(
+            self.motion.velocity(t, dvl.position_m)
+        )
         read = read + self.white(dvl.noise_m_s, len(t), 3)
         return [DvlSample(to_nanoseconds(s), v, NONE) for s, v in zip(t, read, strict=True)]
 

@@ -1,151 +1,16 @@
 """What the filter makes of sensors that lie, fall silent or jump, at half a metre a second."""
 
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 
 import numpy as np
 import pytest
-from scipy.spatial.transform import Rotation
-from sensor_truth import Motion, Rig, Waves
+from navigation_cases import BEGIN, CRUISE, FAULTS, VEHICLE, off, outcome_of, turned
+from sensor_truth import Rig
 
-from uvms_core.signals import to_seconds
+from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_core.vehicle import load_vehicle
 from uvms_observer import NavigationConfig, NavigationFilter
 from uvms_observer.navigation.sensor_health import Health
-
-VEHICLE = load_vehicle()
-TURNING = Waves((0.02, -0.03, 0.2), amplitude=(0.03, 0.02, 0.4), period_s=(9.0, 13.0, 50.0))
-CRUISE = Motion(Waves((0, 0, 10), (0.45, 0.1, 0), (3.0, 2.0, 0.5), (60.0, 45.0, 40.0)), TURNING)
-DIVE = Motion(Waves((0, 0, 10), (0.4, 0.1, 0.2), (1.0, 2.0, 0.2), (60.0, 45.0, 40.0)), TURNING)
-BEGIN, END = 15.0, 60.0
-
-
-@dataclass
-class Fault:
-    """What is done to the samples of one sensor for `seconds` from BEGIN on.
-
-    Args:
-        change: a sample in, a sample out, or None where it is lost.
-        bound: m, of the position's error from then on.
-        health: of the sensor at the end of the fault.
-    """
-
-    sensor: str
-    change: object
-    seconds: float = np.inf
-    bound: float = 0.1
-    health: Health = Health.EXCLUDED
-    motion: Motion = field(default=CRUISE)
-
-    def spoil(self, samples):
-        """The samples of one tick as the filter gets them."""
-        for sample in samples:
-            hit = BEGIN <= to_seconds(sample.stamp) < BEGIN + self.seconds
-            sample = self.change(sample) if hit else sample
-            if sample is not None:
-                yield sample
-
-
-def reads(**values):
-    return lambda sample: replace(sample, **values)
-
-
-def off(name, by):
-    return lambda sample: replace(sample, **{name: getattr(sample, name) + by})
-
-
-def turned(degrees):
-    turn = Rotation.from_euler("z", degrees, degrees=True)
-    return lambda sample: replace(
-        sample, quaternion=(turn * Rotation.from_quat(sample.quaternion)).as_quat()
-    )
-
-
-def spikes(share, rate, force):
-    """Some samples are off by a lot: white, of this std."""
-    rng = np.random.default_rng(5)
-
-    def change(sample):
-        if rng.uniform() > share:
-            return sample
-        return replace(
-            sample,
-            angular_velocity=sample.angular_velocity + rate * rng.standard_normal(3),
-            linear_acceleration=sample.linear_acceleration + force * rng.standard_normal(3),
-        )
-
-    return change
-
-
-def dvl(change, seconds, **rest):
-    return Fault("dvl", change, seconds, **rest)
-
-
-def imu(change, seconds=np.inf, **rest):
-    return Fault("imu", change, seconds, **{"health": Health.GOOD, **rest})
-
-
-def rate(x, y, z):
-    return off("angular_velocity", np.radians([x, y, z]))
-
-
-def force(x, y, z):
-    return off("linear_acceleration", np.array([x, y, z]))
-
-
-ONE = 0.005
-STUCK = VEHICLE.environment.atmospheric_pressure_pa + 105_000.0
-FAULTS = {
-    "dvl reads zero, 6 s": dvl(reads(velocity=np.zeros(3)), 6.0),
-    "dvl reads zero, 15 s": dvl(reads(velocity=np.zeros(3)), 15.0),
-    "dvl reads its error code": dvl(reads(velocity=np.full(3, -32.768)), 30.0, bound=0.3),
-    "dvl off by 5 cm/s": dvl(off("velocity", np.array([0.05, 0.0, 0.0])), 10.0),
-    "dvl has water lock in a current": dvl(off("velocity", np.array([0.16, 0.15, 0.0])), 15.0),
-    "dvl is silent": dvl(lambda sample: None, 20.0, health=Health.LOST),
-    "pressure at the surface": Fault("pressure", reads(pressure=101_325.0), 20.0),
-    "pressure is stuck in a dive": Fault("pressure", reads(pressure=STUCK), 20.0, motion=DIVE),
-    "compass off by 30 deg": imu(turned(30.0), 20.0, health=Health.EXCLUDED),
-    "compass steps by 20 deg": imu(turned(20.0), health=Health.EXCLUDED),
-    "gyro steps by 0.1 deg/s": imu(rate(0, 0, 0.1)),
-    "gyro steps by 1 deg/s": imu(rate(0, 0, 1.0)),
-    "gyro steps by 3 deg/s in roll": imu(rate(3.0, 0, 0)),
-    "accelerometer steps by 5 cm/s2": imu(force(0.05, 0, 0)),
-    "accelerometer steps by 0.3 m/s2": imu(force(0, 0.3, 0)),
-    "accelerometer spikes by 5 m/s2": imu(force(5.0, 0, 0), ONE),
-    "accelerometer spikes by 1000 m/s2": imu(force(1000.0, 0, 0), ONE),
-    "imu is silent for 1 s": imu(lambda sample: None, 1.0),
-    "imu is silent for 5 s": imu(lambda sample: None, 5.0, health=Health.LOST),
-    "5 % of the imu's samples are spikes": imu(spikes(0.05, 1.0, 10.0)),
-    "5 % of the imu's samples are small spikes": imu(spikes(0.05, 0.05, 0.3)),
-    "quaternions are rounded": imu(lambda s: replace(s, quaternion=1.002 * s.quaternion)),
-}
-
-
-@dataclass
-class Outcome:
-    """Errors (k,) m of the position, in units of their own covariance, and the filter."""
-
-    errors: np.ndarray
-    distances: np.ndarray
-    health: Health
-    navigation: NavigationFilter
-
-
-def outcome_of(fault, seed=1):
-    rig = Rig(VEHICLE, fault.motion, seed)
-    start = tuple(map(float, fault.motion.position(0.0)))
-    navigation = NavigationFilter(VEHICLE, NavigationConfig(initial_position_m=start))
-    errors, distances, health = [], [], Health.GOOD
-    for stamp, *samples in rig.frames(END):
-        groups = dict(zip(("imu", "dvl", "pressure", "gps"), samples, strict=True))
-        groups[fault.sensor] = list(fault.spoil(groups[fault.sensor]))
-        odometry, _ = navigation.step_screened(stamp, groups)
-        error = fault.motion.position(to_seconds(stamp)) - odometry.position
-        errors.append(np.linalg.norm(error))
-        spread = np.linalg.solve(odometry.pose_covariance[:3, :3], error)
-        distances.append(np.sqrt(error @ spread))
-        if to_seconds(stamp) < BEGIN + fault.seconds:
-            health = navigation.health()[fault.sensor]
-    return Outcome(np.array(errors), np.array(distances), health, navigation)
 
 
 @pytest.mark.parametrize("name", FAULTS)
@@ -155,11 +20,79 @@ def test_the_estimate_stays_right_and_says_how_right(name):
     outcome = outcome_of(fault)
     assert outcome.errors.max() < fault.bound
     assert (outcome.distances < 3.76).mean() > 0.99
+    assert outcome.jumps.max() < 3.0
     if fault.seconds > 1.0:
         assert outcome.health is fault.health
     P = outcome.navigation.state.covariance
     np.testing.assert_array_equal(P, P.T)
     assert np.linalg.eigvalsh(P).min() > -1e-12
+
+
+def test_a_sensor_that_jumped_away_does_not_slip_in_where_the_estimate_has_become_uncertain():
+    """A poor inertial unit alone is soon less certain than the DVL is wrong."""
+    vehicle = load_vehicle("bluerov2_alpha5")
+    outcome = outcome_of(FAULTS["dvl has water lock in a current"], 1, vehicle)
+    status = outcome.navigation.status()
+    assert status["dvl_gated"] == 15 * 8
+    assert outcome.errors.max() < 0.5
+    assert outcome.distances.max() < 3.0
+
+
+def test_while_it_is_open_who_is_wrong_the_covariance_says_so():
+    """The accelerometer steps: until that is found, the DVL seems to lie."""
+    fault = FAULTS["accelerometer steps by 2 m/s2"]
+    outcome = outcome_of(fault)
+    assert outcome.errors.max() > 0.1
+    assert outcome.distances.max() < 3.0
+    assert outcome.navigation.status()["corrected"] == 1
+
+
+def test_water_lock_tells_the_current():
+    rig, current = Rig(VEHICLE, CRUISE), np.array([0.2, -0.1, 0.0])
+    navigation = NavigationFilter(VEHICLE, NavigationConfig(initial_position_m=(0, 0, 10)))
+    for stamp, imu, dvl_samples, pressure, gps in rig.frames(60.0):
+        t = to_seconds(stamp)
+        if t > BEGIN:  # bottom lock is lost now and then, and for good at the end
+            through = CRUISE.rotation(t).inv().apply(current)
+            dvl_samples = [
+                replace(sample, velocity=sample.velocity - through, lock="water")
+                if t % 2.0 < 1.0 or t > 40.0
+                else sample
+                for sample in dvl_samples
+            ]
+        odometry = navigation.step(stamp, imu, dvl_samples, pressure, gps)
+    found, sigma = navigation.state.further[-2:], np.sqrt(np.diag(navigation.state.covariance)[-2:])
+    assert np.abs(found - current[:2]).max() < 0.02
+    assert np.abs((found - current[:2]) / sigma).max() < 3.0
+    assert np.linalg.norm(odometry.position - CRUISE.position(60.0)) < 0.3
+    assert navigation.health()["dvl"] is Health.GOOD
+
+
+def test_a_filter_whose_sensors_are_noisier_than_stated_says_so():
+    rig = Rig(VEHICLE, CRUISE, noise=2.0)
+    navigation = NavigationFilter(VEHICLE, NavigationConfig(initial_position_m=(0, 0, 10)))
+    for frame in rig.frames(30.0):
+        odometry = navigation.step(*frame)
+    assert "residuals are larger than stated noise explains" in navigation.trouble().text
+    inside = navigation.state.covariance
+    scale = odometry.pose_covariance[3, 3] / inside[6, 6]
+    assert 2.0 < scale < 5.0  # twice the noise is four times the variance
+
+
+def test_where_two_sensors_contradict_the_estimate_it_is_begun_anew_and_counted():
+    """Compass and DVL step at once, for good: more likely than not they know better."""
+    rig, offset = Rig(VEHICLE, CRUISE), np.array([0.5, 0.0, 0.0])
+    navigation = NavigationFilter(VEHICLE, NavigationConfig(initial_position_m=(0, 0, 10)))
+    for stamp, imu_samples, dvl_samples, pressure, gps in rig.frames(40.0):
+        if stamp > to_nanoseconds(BEGIN):
+            imu_samples = [turned(40.0)(sample) for sample in imu_samples]
+            dvl_samples = [off("velocity", offset)(sample) for sample in dvl_samples]
+        odometry = navigation.step(stamp, imu_samples, dvl_samples, pressure, gps)
+    assert navigation.status()["resets"] == 1
+    assert "begun anew" in navigation.trouble().text
+    told = CRUISE.velocity(40.0, np.zeros(3)) + offset
+    assert np.abs(odometry.nu[:3] - told).max() < 0.05
+    assert np.sqrt(odometry.pose_covariance[0, 0]) > 10.0
 
 
 def test_a_sensor_that_is_good_again_is_used_again():

@@ -6,6 +6,7 @@ import sys
 
 import stamps
 import workspace
+from chromium import Browser
 from commands import environment
 from machine import SetupError
 
@@ -156,5 +157,5 @@ FOR_KERNELS = (ENVIRONMENT, RUNTIME, PACKAGES)
 
 def plan(development):
     """The stages to carry out, in order."""
-    extra = [DEVELOPMENT] if development else []
+    extra = [DEVELOPMENT, Browser()] if development else []
     return [*FOR_KERNELS, ROS, *extra, Interfaces()]

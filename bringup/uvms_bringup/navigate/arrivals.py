@@ -2,7 +2,6 @@
 
 from uvms_analysis.log.read import RunLog
 from uvms_core import topics
-from uvms_core.sensors import sensor_type
 
 
 class Arrivals:
@@ -11,11 +10,10 @@ class Arrivals:
     def __init__(self, run: RunLog) -> None:
         self._told: dict[str, dict[int, int]] = {}  # newest stamp by tick, by full topic name
         gaps = run.signals(topics.SENSOR_GAPS) if run.has(topics.SENSOR_GAPS) else []
+        sampled = topics.sampled_topics(run.vehicle) if gaps else {}
         for each in gaps:
             for sensor, newest in zip(each.sensors, each.newest, strict=True):
-                encoders = sensor == topics.ENCODERS
-                topic = topics.JOINT_STATES if encoders else sensor_type(sensor).topic
-                name = topic.resolve(run.namespace)
+                name = sampled[sensor].resolve(run.namespace)
                 self._told.setdefault(name, {})[each.stamp] = newest
 
     def __call__(self, name: str, stamp: int, tick: int) -> int:

@@ -9,7 +9,6 @@ from uvms_bringup.navigate.feed import Feed, Sample
 from uvms_core import topics
 from uvms_core.part import InProcess, Output
 from uvms_core.plausibility import Plausibility
-from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_observer import NavigationConfig
@@ -47,7 +46,7 @@ class Estimation:
         for sample in feed.samples():
             if tick is None:  # what comes before attitude and rates is of no use
                 waiting = [*waiting[-1000:], sample]
-                if sample.topic.name != INERTIAL.topic.name:
+                if sample.topic.name != self.part.trigger.name:
                     continue
                 tick = self._tick_at(sample.arrival)
                 self._admit(waiting)

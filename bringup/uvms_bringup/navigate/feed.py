@@ -64,9 +64,12 @@ class Feed:
         """What was wrong with the first one of each topic."""
         self._readers: dict[str, Callable[[bytes], Any]] = {}
         self._topics: dict[str, Topic] = {}
+        self._of_world: set[str] = set()
         for sensor in used_sensors(vehicle):
             if (name := wanted.sensors.get(sensor.name)) is not None:
                 self._topics[name], self._readers[name] = sensor.topic, bag.decoder(name)
+                if sensor.type.frame == WORLD_FRAME:
+                    self._of_world.add(name)
         arrivals = Arrivals(bag.run) if bag.run is not None and bag.is_ours else None
         self._raw = self._in_order(list(bag.messages(list(self._topics))), arrivals, period)
 
@@ -124,7 +127,9 @@ class Feed:
         for arrival, stamp, one in self._raw:
             topic = self._topics[one.topic]
             try:
-                signal = from_message(*_framed(topic, self._readers[one.topic](one.data)))
+                message = self._readers[one.topic](one.data)
+                framed = topic if one.topic in self._of_world else _framed(topic, message)
+                signal = from_message(framed, message)
                 if self._stamps == LOG:
                     signal = replace(signal, stamp=stamp)
                     check(topic.name, signal)
@@ -138,15 +143,13 @@ class Feed:
         self.first_fault.setdefault(topic, why)
 
 
-def _framed(topic: Topic, message: Any) -> tuple[Topic, Any]:
-    """The topic with the message's own frame id, where the frame is that of a mounted sensor.
+def _framed(topic: Topic, message: Any) -> Topic:
+    """The topic of a mounted sensor with the message's own frame id.
 
     What is fed to the filter has been chosen by hand; the vehicle file says how it is mounted. A
     frame of the world says which axes its numbers have, and is checked.
     """
-    if topic.frame == WORLD_FRAME:
-        return topic, message
     try:
-        return replace(topic, frame=message.header.frame_id), message
+        return replace(topic, frame=message.header.frame_id)
     except AttributeError as fault:
         raise SignalError(f"{topic.name}: has no header") from fault

@@ -24,10 +24,11 @@ from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle, dump_vehicle, load_vehicle
 from uvms_dynamics.simulation import PlantConfig
 from uvms_observer import NavigationConfig, NavigationFilter
+from uvms_observer.arrivals import used_sensors
 from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_SPEED_M_S, lost
 
 ABSOLUTE = ("gps", "position_fix")
-"""Sensors that say where the vehicle is."""
+"""Kinds of sensors that say where the vehicle is."""
 NAME = "odometry.mcap"
 
 
@@ -112,7 +113,8 @@ def _start(feed: Feed, wanted: TopicMap, setup: Setup, track: Track | None) -> O
     first, _ = feed.span
     stamp = -(-first // setup.period) * setup.period
     position = np.array(setup.config.initial_position_m)
-    if any(name in wanted.sensors for name in ABSOLUTE):
+    used = [each for each in used_sensors(setup.vehicle) if each.name in wanted.sensors]
+    if any(sensor.type.name in ABSOLUTE for sensor in used):
         return lost(stamp, position)
     begin = position * [1.0, 1.0, 0.0] if track is None else track.position[0]
     known = setup.config.initial_position_std_m

@@ -8,7 +8,7 @@ from uvms_bringup.errors import BringupError
 from uvms_bringup.navigate.bag import Bag
 from uvms_core import registry, topics
 from uvms_core.errors import PluginError
-from uvms_core.sensors import INERTIAL, SensorType, sensor_type
+from uvms_core.sensors import INERTIAL, MountedSensor, sensor_type
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
 from uvms_core.yaml_text import read_yaml
@@ -83,7 +83,7 @@ def topic_map(bag: Bag, vehicle: Vehicle, given: Mapping[str, str]) -> TopicMap:
     return found
 
 
-def _check_keys(given: Mapping[str, str], sensors: Mapping[str, SensorType]) -> None:
+def _check_keys(given: Mapping[str, str], sensors: Mapping[str, MountedSensor]) -> None:
     for key in given:
         if key not in sensors and key != REFERENCE:
             raise TopicMapError(
@@ -110,7 +110,7 @@ def _given(bag: Bag, key: str, types: Sequence[str], given: Mapping[str, str]) -
 def _guess(found: TopicMap, bag: Bag, topic: Topic, key: str, taken: set[str]) -> str | None:
     """The only topic of the type that nothing else is; our own name goes before."""
     fits = [name for name in bag.of_type(topic.type) if name not in taken]
-    own = [name for name in fits if name.endswith(f"/{topic.name}")]
+    own = [name for name in fits if name.endswith(topic.resolve())]
     if len(own) == 1:
         return own[0]
     if len(fits) == 1:
@@ -128,7 +128,7 @@ def _require_unit(bag: Bag, found: TopicMap) -> None:
     key = INERTIAL.name
     if key in found.sensors:
         return
-    fits = bag.of_type(INERTIAL.topic.type)
+    fits = bag.of_type(INERTIAL.message)
     if fits:
         raise TopicMapError(
             f"log {bag.path}: which of {', '.join(fits)} is the inertial unit? Choose one by"
@@ -136,7 +136,7 @@ def _require_unit(bag: Bag, found: TopicMap) -> None:
         )
     known = ", ".join(f"{name} [{one}]" for name, one in sorted(bag.types.items())) or "nothing"
     raise TopicMapError(
-        f"log {bag.path}: has no {INERTIAL.topic.type}, which navigation needs; it has {known}"
+        f"log {bag.path}: has no {INERTIAL.message}, which navigation needs; it has {known}"
     )
 
 
@@ -156,7 +156,7 @@ def _guess_reference(found: TopicMap, bag: Bag) -> str | None:
     return None
 
 
-def _unused(bag: Bag, found: TopicMap, sensors: Iterable[SensorType]) -> list[str]:
+def _unused(bag: Bag, found: TopicMap, sensors: Iterable[MountedSensor]) -> list[str]:
     """Topics with measurements that this vehicle has no sensor for."""
     known = {sensor.topic.type for sensor in sensors}
     further = sorted(_measured_types() - known)

@@ -36,8 +36,8 @@ TRUTH = (
     topics.TRUE_JOINT_STATES,
     topics.TRUE_DISTURBANCE,
 )
-EACH_TICK = (topics.CLOCK, *TRUTH, topics.JOINT_STATES, INERTIAL.topic)
-"""What a plant publishes at every tick."""
+EACH_TICK = (topics.CLOCK, *TRUTH, topics.JOINT_STATES)
+"""What a plant publishes at every tick, beside the samples of the inertial unit."""
 
 
 def window_for(vehicle: Vehicle, period: int) -> int:
@@ -60,6 +60,7 @@ class Acknowledgement:
         graph: what each role reads and writes.
         foreign: roles of nodes that need not publish what nobody reads.
         further: topics that the run itself publishes at each tick.
+        sampled: topics of the vehicle's sensors, `topics.sampled_topics(vehicle)`.
         period: control period, ns.
         window: of the plant, in control periods.
     """
@@ -71,12 +72,15 @@ class Acknowledgement:
         graph: Mapping[str, NodeTopics],
         foreign: Collection[str],
         further: Collection[Topic],
+        sampled: Mapping[str, Topic],
         period: int,
         window: int,
     ) -> None:
         self._recorder, self._newest = recorder, recorder.newest
         self.given_up: list[str] = []  # what was waited for in vain, in words
-        self._plants = [topic.name for topic in EACH_TICK if _counts(topic, graph, foreign)]
+        self._sampled = sampled
+        each_tick = (*EACH_TICK, sampled[INERTIAL.name])
+        self._plants = [topic.name for topic in each_tick if _counts(topic, graph, foreign)]
         answers = [
             topic
             for role, own in graph.items()
@@ -116,7 +120,7 @@ class Acknowledgement:
         """Samples that are late or missing are not waited for."""
         message = self._gaps.decode(data)
         for sensor, newest in zip(message.sensors, message.newest, strict=True):
-            self._late[topics.sampled_topic(sensor)] = newest
+            self._late[self._sampled[sensor].name] = newest
         self._also_gaps(data)
 
     def _look(self) -> None:

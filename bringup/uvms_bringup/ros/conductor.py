@@ -113,11 +113,11 @@ class Conductor(Node):
         self.recorder.receivers.update(states.receivers)
         self._end = (*LOOP_END, topics.TF)
 
-    def acknowledge(self, period: int, window: int) -> None:
+    def acknowledge(self, period: int, window: int, sampled: Mapping[str, Topic]) -> None:
         """From now on tell the plant what is recorded, as `Acknowledgement` says."""
         further = [topic for topic in self._end if topic is topics.TF]
         self.acknowledgement = Acknowledgement(
-            self, self.recorder, self._graph, self._foreign, further, period, window
+            self, self.recorder, self._graph, self._foreign, further, sampled, period, window
         )
 
     def check_alone(self, spinner: Spinner, others: bool) -> None:

@@ -40,14 +40,19 @@ class LiveSource:
     Args:
         vehicle_file: of the graph's vehicle; None: as the motion planner of the graph says.
         namespace: of the vehicle's topics.
+        domain: of the graph; None: as ROS_DOMAIN_ID says.
 
     Raises:
         ViewError: there is no such graph, or it says nothing.
     """
 
-    def __init__(self, vehicle_file: str | None = None, namespace: str = "") -> None:
+    def __init__(
+        self, vehicle_file: str | None = None, namespace: str = "", domain: int | None = None
+    ) -> None:
         self._context = rclpy.Context()
-        rclpy.init(context=self._context, signal_handler_options=SignalHandlerOptions.NO)
+        rclpy.init(
+            context=self._context, domain_id=domain, signal_handler_options=SignalHandlerOptions.NO
+        )
         self._node = Node("viewer", context=self._context, namespace=namespace)
         self._executor = SingleThreadedExecutor(context=self._context)
         self._executor.add_node(self._node)

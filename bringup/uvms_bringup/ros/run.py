@@ -155,7 +155,8 @@ class GraphRun:
         conductor.check_alone(spinner, others)
         conductor.broadcast(self.vehicle, self._in_lockstep)
         if self._in_lockstep:
-            conductor.acknowledge(self._period, self._window)
+            sampled = topics.sampled_topics(self.vehicle)
+            conductor.acknowledge(self._period, self._window, sampled)
         spinner.add(nodes.enter())
         conductor.conduct(spinner, self.goal)
         plant_watch = PlantWatch(conductor, conductor.recorder)

@@ -8,7 +8,6 @@ from uvms_analysis.log.read import RunLog
 from uvms_bringup.navigate.arrivals import Arrivals
 from uvms_bringup.ros.recorder import stamp_of
 from uvms_core import topics
-from uvms_core.topic import SENSORS
 
 Input = tuple[str, bytes]
 
@@ -40,9 +39,7 @@ class TickOf:
 
 def with_gaps(run: RunLog, own: topics.NodeTopics) -> topics.NodeTopics:
     """The node's topics, with what the plant said of missing samples if it reads sensors."""
-    reads_sensors = any(
-        topic is topics.JOINT_STATES or topic.name.startswith(SENSORS) for topic in own.inputs
-    )
+    reads_sensors = any(topic is topics.JOINT_STATES or topic.sensor for topic in own.inputs)
     if not reads_sensors or not run.has(topics.SENSOR_GAPS):
         return own
     return replace(own, inputs=(*own.inputs, topics.SENSOR_GAPS))

@@ -30,11 +30,11 @@ def export(source: LogSource, file: str | Path, frames: int = FRAMES) -> Path:
         LogError: the log cannot be read.
         ViewError: the file cannot be written.
     """
-    times = frame_times(source.start_s, source.end_s, frames)
-    text = _recorded(source, times)
     path = Path(file)
     try:
-        path.write_text(text, encoding="utf-8")
+        path.touch()  # before the work, which takes its time
+        times = frame_times(source.start_s, source.end_s, frames)
+        path.write_text(_recorded(source, times), encoding="utf-8")
     except OSError as fault:
         raise ViewError(f"{path}: cannot be written: {fault.strerror}") from fault
     return path
@@ -80,11 +80,16 @@ def scene_server() -> Iterator[viser.ViserServer]:
     try:
         yield server
     finally:
-        with redirect_stdout(StringIO()):
-            server.stop()
+        stop_quietly(server)
 
 
 def quiet_server(host: str, port: int, title: str) -> viser.ViserServer:
     """A server of viser without its banner."""
     with redirect_stdout(StringIO()):
         return viser.ViserServer(host, port, title, verbose=False)
+
+
+def stop_quietly(server: viser.ViserServer) -> None:
+    """End a server without its message."""
+    with redirect_stdout(StringIO()):
+        server.stop()

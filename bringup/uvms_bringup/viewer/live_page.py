@@ -95,16 +95,17 @@ class LivePage(Page):
             return
         vehicle = self.graph.vehicle
         start, end = tool_now(vehicle, *state), np.array(self._gizmo.position)
-        self._goal = straight_goal(start, end, 1e-3 * self._speed.value)
-        self.preview = preview(vehicle, self._config, *state, self._goal)
+        goal = straight_goal(start, end, 1e-3 * self._speed.value)
+        self.preview = preview(vehicle, self._config, *state, goal)
+        self._goal = None if self.preview.refusal else goal
         self._answer.content = _text(self.preview)
         self._send.disabled = bool(self.preview.refusal)
         self._show_preview(self.preview)
 
     def send(self) -> None:
         """Send the goal that was planned last."""
-        if self._goal is not None:
-            self._try(lambda: self.graph.send(self._goal))  # type: ignore[arg-type]
+        if (goal := self._goal) is not None:
+            self._try(lambda: self.graph.send(goal))
             self._send.disabled = True
 
     def place_gizmo(self, position: Array) -> None:

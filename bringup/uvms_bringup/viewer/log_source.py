@@ -14,6 +14,7 @@ from uvms_analysis.happened import events_of
 from uvms_analysis.log.instants import Instants
 from uvms_analysis.log.locate import log_path
 from uvms_analysis.log.read import RunLog
+from uvms_bringup.errors import ViewError
 from uvms_bringup.viewer.moment import Forces, Moment, Posture, Thrusts
 from uvms_bringup.viewer.overview import Overview
 from uvms_bringup.viewer.scene_model import Setting
@@ -38,6 +39,7 @@ WANTED = {
     topics.REFERENCE: PLAN_AGE_S,
     topics.END_EFFECTOR_TARGET: AGE_S,
 }
+POSES = topics.TRUE_ODOMETRY, topics.ODOMETRY
 INSTANTS = 400
 """Of the overview, evenly over the run."""
 ASKED_POINTS = 300
@@ -58,19 +60,27 @@ class LogSource:
         self.log = RunLog.open(log_path(path))
         self.vehicle = self.log.vehicle
         self._instants = Instants(self.log, WANTED)
-        if not self._instants.names & {topics.TRUE_ODOMETRY.name, topics.ODOMETRY.name}:
+        if not self._instants.names & {topic.name for topic in POSES}:
             raise LogError(
                 f"log {self.log.path}: has neither {topics.ODOMETRY.name} nor"
                 f" {topics.TRUE_ODOMETRY.name}, so there is nothing to look at"
             )
         self._current = current_of(self.log)
         self.start_s = to_seconds(self._instants.first)
-        self.end_s = to_seconds(self._instants.last)
+        self.end_s = self._end()
 
     @property
     def name(self) -> str:
         """What the run is called."""
         return self.log.run.get("scenario", self.log.path.stem)
+
+    def check_span(self, start: float, end: float) -> None:
+        """Raises ViewError unless these times, in s, lie in the run in this order."""
+        if not self.start_s <= start <= end <= self.end_s:
+            raise ViewError(
+                f"{start:g} to {end:g} s: {self.name} goes from {self.start_s:g} to"
+                f" {self.end_s:g} s"
+            )
 
     def moment(self, time: float) -> Moment:
         """What is known at a time in s."""
@@ -112,6 +122,12 @@ class LogSource:
         """The goal's path and when it begins, s."""
         run = Analysis(self.log)
         return None if run.path is None else (EndEffectorPath(run.path), run.path_start_s)
+
+    def _end(self) -> float:
+        """When the vehicle was last heard of, s: references are stamped ahead of it."""
+        said = self._instants.at(self._instants.last)
+        poses = [said[topic.name].stamp for topic in POSES if topic.name in said]
+        return to_seconds(max(poses, default=self._instants.last))
 
     def _asked_points(self) -> Array | None:
         if self._path is None:

@@ -29,17 +29,19 @@ def write_movie(
 
     Raises:
         LogError: the log cannot be read.
-        ViewError: the file cannot be written, or is neither GIF nor MP4.
+        ViewError: the file cannot be written or is neither GIF nor MP4; the run has no such span.
     """
     path = Path(file)
     if path.suffix not in RATES:
         raise ViewError(f"{path}: a movie ends in one of {', '.join(RATES)}")
     start, end = span or (source.start_s, source.end_s)
+    source.check_span(start, end)
     speed = max((end - start) / LONGEST_S, 1.0) if speed is None else speed
     rate = RATES[path.suffix]
     times = np.arange(start, end, speed / rate)
     write = _write_gif if path.suffix == ".gif" else _write_mp4
     try:
+        path.touch()  # before the work, which takes its time
         write(path, _frames(source, times, preset), rate)
     except OSError as fault:
         raise ViewError(f"{path}: cannot be written: {fault}") from fault

@@ -8,7 +8,7 @@ import viser
 from uvms_bringup.viewer.cameras import FREE, PRESETS, WIDE, view_of
 from uvms_bringup.viewer.drawing import Drawing
 from uvms_bringup.viewer.elements import Places
-from uvms_bringup.viewer.export import quiet_server
+from uvms_bringup.viewer.export import quiet_server, stop_quietly
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.moment import Moment, tool_pose
 from uvms_bringup.viewer.player import SPEEDS, Player
@@ -51,6 +51,16 @@ class Page:
     def address(self) -> str:
         """Where the page is."""
         return f"http://{self.server.get_host()}:{self.server.get_port()}"
+
+    def close(self) -> None:
+        """End the server."""
+        stop_quietly(self.server)
+
+    def look_from(self, preset: str) -> None:
+        """Put the cameras of everybody who looks to a preset."""
+        for client in self.server.get_clients().values():
+            self._presets[client.client_id] = preset
+            self._look(client, preset)
 
     def add_cameras(self) -> None:
         """Buttons for the presets."""

@@ -52,6 +52,7 @@ def _show_log(options: Namespace) -> int:
         return 0
     if options.picture is not None:
         time = source.end_s if options.at is None else options.at
+        source.check_span(time, time)
         moment = source.moment(time)
         model = SceneModel(source.setting)
         print(write_picture(model, moment, options.picture, options.camera, source.name))

@@ -5,7 +5,7 @@ with the last good value, as long as that is not too old (`uvms_core.tick_gate.K
 """
 
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Any
 
 from uvms_core.errors import ImplausibleError, StampError, UvmsError
@@ -13,7 +13,7 @@ from uvms_core.plausibility import Plausibility
 from uvms_core.tick_gate import KEEP, Tick, TickGate
 from uvms_core.timeline import Item, Judged, Jump, Timeline
 from uvms_core.topic import Topic
-from uvms_core.topics import SENSOR_GAPS, sampled_topic
+from uvms_core.topics import SENSOR_GAPS
 
 UNREADABLE, IMPLAUSIBLE, JUMPS, RESETS = "unreadable", "implausible", "jumps_taken", "resets"
 
@@ -26,6 +26,7 @@ class Intake:
         timeline: of the node.
         plausibility: of the vehicle.
         on_time_jump: called when time has jumped so far that the part must be restarted.
+        sampled: topics of the sensors' samples by the sensor's name.
     """
 
     def __init__(
@@ -34,9 +35,11 @@ class Intake:
         timeline: Timeline,
         plausibility: Plausibility,
         on_time_jump: Callable[[Jump], None],
+        sampled: Mapping[str, Topic],
     ) -> None:
         self.gate, self.timeline = gate, timeline
         self._plausibility, self._on_time_jump = plausibility, on_time_jump
+        self._sampled = sampled
         self._topics: dict[str, Topic] = {}
         self._counts: Counter[str] = Counter({UNREADABLE: 0, IMPLAUSIBLE: 0, JUMPS: 0, RESETS: 0})
         self.faults: list[UvmsError] = []
@@ -85,8 +88,9 @@ class Intake:
     def _hand_over(self, item: Item) -> list[Tick]:
         if item.name == SENSOR_GAPS.name:
             gaps = item.content
-            newest = map(sampled_topic, gaps.sensors)
-            return self.gate.skip(gaps.stamp, dict(zip(newest, gaps.newest, strict=True)))
+            named = zip(gaps.sensors, gaps.newest, strict=True)
+            newest = {self._sampled[name].name: at for name, at in named if name in self._sampled}
+            return self.gate.skip(gaps.stamp, newest)
         try:
             news = self._plausibility.admit(self._topics[item.name], item.content)
         except ImplausibleError as fault:

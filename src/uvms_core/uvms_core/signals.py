@@ -12,7 +12,7 @@ of samples, which no part of the system reads: the vehicle file has the sensors'
 """
 
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Literal
+from typing import Annotated, Final, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -73,7 +73,7 @@ def to_seconds(stamp: int) -> float:
 
 @dataclass(frozen=True)
 class ImuSample:
-    """Gyrocompass and inertial unit; its axes are parallel to the body frame's."""
+    """Gyrocompass and inertial unit, in body axes."""
 
     stamp: int
     quaternion: Quaternion  # body to map_ned
@@ -82,6 +82,13 @@ class ImuSample:
     orientation_covariance: Array  # (3, 3) rad^2, about the body axes
     angular_velocity_covariance: Array  # (3, 3)
     linear_acceleration_covariance: Array  # (3, 3)
+    oriented: bool = True  # whether the attitude was measured; if not, the quaternion is level
+
+
+Lock = Literal["bottom", "water"]
+"""What a DVL may measure against."""
+BOTTOM_LOCK: Final = "bottom"
+WATER_LOCK: Final = "water"
 
 
 @dataclass(frozen=True)
@@ -91,7 +98,7 @@ class DvlSample:
     stamp: int
     velocity: Array3  # m/s
     covariance: Array  # (3, 3)
-    lock: Literal["bottom", "water"] = "bottom"
+    lock: Lock = BOTTOM_LOCK
 
 
 @dataclass(frozen=True)

@@ -53,6 +53,8 @@ class Topic:
         conversion: of the signal, where `uvms_core.messages` does not know its class.
         is_occasional: whether it is published only when there is something to say, and may have
             no publisher at all.
+        is_enu: whether a frame of the world that is neither map_ned nor map has east, north, up.
+        sensor: of a sensor's samples, the name of its section in the vehicle file.
     """
 
     name: str
@@ -63,6 +65,8 @@ class Topic:
     qos: Qos = Qos()
     conversion: Conversion | None = None
     is_occasional: bool = False
+    is_enu: bool = False
+    sensor: str = ""
 
     @property
     def is_global(self) -> bool:

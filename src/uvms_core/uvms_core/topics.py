@@ -56,9 +56,10 @@ __all__ = [
     "nodes",
     "of",
     "readers",
-    "sampled_topic",
+    "sampled_topics",
 ]
 
+Sampled = sensors.SensorType | sensors.MountedSensor
 PLANT = "plant"
 NAVIGATION = "navigation"
 DISTURBANCE_OBSERVER = "disturbance_observer"
@@ -153,12 +154,13 @@ ENCODERS = "encoders"
 """The joint encoders, which are no sensor of the body; their samples are the joint states."""
 
 
-def sampled_topic(sensor: str) -> str:
-    """Name of the topic with the samples of a sensor of the vehicle file."""
-    return JOINT_STATES.name if sensor == ENCODERS else f"{SENSORS}{sensor}"
+def sampled_topics(vehicle: Vehicle) -> dict[str, Topic]:
+    """The topics with the samples of the vehicle's sensors, by name, the encoders' included."""
+    mounted = {sensor.name: sensor.topic for sensor in sensors.mounted_sensors(vehicle)}
+    return {**mounted, ENCODERS: JOINT_STATES}
 
 
-def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:
+def _all(kinds: Iterable[Sampled]) -> tuple[Topic, ...]:
     return (
         CLOCK,
         *(sensor.topic for sensor in kinds),
@@ -186,7 +188,7 @@ def _all(kinds: Iterable[sensors.SensorType]) -> tuple[Topic, ...]:
 
 def of(vehicle: Vehicle) -> tuple[Topic, ...]:
     """Every topic of a run with this vehicle, its further sensors' included."""
-    return _all(sensors.sensor_types(vehicle))
+    return _all(sensors.mounted_sensors(vehicle))
 
 
 ALL = _all(sensors.BUILT_IN)
@@ -208,7 +210,7 @@ def action_of(goal: signals.Goal) -> Action:
     return next(action for action in ACTIONS if isinstance(goal, action.goal))
 
 
-def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:
+def _nodes(kinds: Iterable[Sampled]) -> dict[str, NodeTopics]:
     kinds = tuple(kinds)
     measured = tuple(sensor.topic for sensor in kinds)
     fused = tuple(sensor.topic for sensor in kinds if sensor.navigation)
@@ -246,7 +248,7 @@ def _nodes(kinds: Iterable[sensors.SensorType]) -> dict[str, NodeTopics]:
 
 def nodes(vehicle: Vehicle) -> dict[str, NodeTopics]:
     """What the nodes read and write in a run with this vehicle."""
-    return _nodes(sensors.sensor_types(vehicle))
+    return _nodes(sensors.mounted_sensors(vehicle))
 
 
 NODES = _nodes(sensors.BUILT_IN)

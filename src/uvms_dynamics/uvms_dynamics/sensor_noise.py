@@ -22,16 +22,32 @@ def sensor_noise(vehicle: Vehicle) -> tuple[Array, Array]:
     corrected by the DVL; depth that of the velocity, corrected by the pressure. Rates are the
     gyro's.
     """
-    sensors = vehicle.sensors
-    imu, dvl, pressure = sensors.imu, sensors.dvl, sensors.pressure
+    imu = vehicle.sensors.imu
     tick = 1.0 / imu.rate_hz
     gyro = np.radians(imu.gyro_noise_deg_s)
     tilt = settled(gyro * tick, np.radians(imu.roll_pitch_noise_deg))
     heading = settled(gyro * tick, np.radians(imu.heading_noise_deg))
-    velocity = settled(imu.accelerometer_noise_m_s2 * np.sqrt(tick / dvl.rate_hz), dvl.noise_m_s)
-    depth = settled(velocity / pressure.rate_hz, pressure.noise_pa / _pascals_per_metre(vehicle))
+    velocity = _velocity_noise(vehicle)
+    depth = _depth_noise(vehicle, velocity)
     pose = np.array([0.0, 0.0, depth, tilt, tilt, heading])
     return pose, np.array([velocity] * 3 + [gyro] * 3)
+
+
+def _velocity_noise(vehicle: Vehicle) -> float:
+    """Without a DVL it is integrated, and has what one tick of the accelerometer adds."""
+    imu, dvl = vehicle.sensors.imu, vehicle.sensors.dvl
+    if dvl is None:
+        return imu.accelerometer_noise_m_s2 / imu.rate_hz
+    tick = 1.0 / imu.rate_hz
+    return settled(imu.accelerometer_noise_m_s2 * np.sqrt(tick / dvl.rate_hz), dvl.noise_m_s)
+
+
+def _depth_noise(vehicle: Vehicle, velocity: float) -> float:
+    """Without a pressure sensor it is integrated, as north and east are."""
+    pressure = vehicle.sensors.pressure
+    if pressure is None:
+        return 0.0
+    return settled(velocity / pressure.rate_hz, pressure.noise_pa / _pascals_per_metre(vehicle))
 
 
 def settled(drive: float, measurement: float) -> float:

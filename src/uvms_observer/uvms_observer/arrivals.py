@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator
 
-from uvms_core.sensors import SensorType, sensor_types
+from uvms_core.sensors import MountedSensor, mounted_sensors
 from uvms_core.signals import to_nanoseconds
 from uvms_core.tick_gate import Periodic
 from uvms_core.topic import Topic
@@ -10,17 +10,15 @@ from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Sensor
 
 
-def used_sensors(vehicle: Vehicle) -> Iterator[SensorType]:
+def used_sensors(vehicle: Vehicle) -> Iterator[MountedSensor]:
     """Those of the vehicle's sensors whose samples navigation takes."""
-    return (sensor for sensor in sensor_types(vehicle) if sensor.navigation)
+    return (sensor for sensor in mounted_sensors(vehicle) if sensor.navigation)
 
 
 def sensor_inputs(vehicle: Vehicle) -> dict[Topic, Periodic]:
     """The topics of those sensors, each at its own rate."""
-    sections = vehicle.sensors.mounted
     return {
-        sensor.topic: Periodic(sample_period(sections[sensor.name]))
-        for sensor in used_sensors(vehicle)
+        sensor.topic: Periodic(sample_period(sensor.section)) for sensor in used_sensors(vehicle)
     }
 
 

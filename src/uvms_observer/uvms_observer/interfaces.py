@@ -64,6 +64,6 @@ class NavigationEstimator(Protocol):
         ...
 
     @abstractmethod
-    def status(self) -> dict[str, int | float]:
+    def status(self) -> Mapping[str, int | float | str]:
         """Counters and other numbers for /diagnostics."""
         ...

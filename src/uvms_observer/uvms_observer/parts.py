@@ -9,7 +9,7 @@ from uvms_core.diagnostics import ERROR, Trouble
 from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create, prepared
-from uvms_core.sensors import INERTIAL
+from uvms_core.sensors import inertial
 from uvms_core.signals import DisturbanceBudget, Odometry, Wrench
 from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
 from uvms_core.vehicle import Vehicle
@@ -44,13 +44,13 @@ class NavigationPart(Part):
         period: of the control loop, ns.
     """
 
-    trigger = INERTIAL.topic
     outputs = topics.NODES[topics.NAVIGATION].outputs
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig, period: int) -> None:
         self._vehicle, self._config = vehicle, config
         self.filter: NavigationEstimator = create(config, vehicle)
         self.every = period
+        self.trigger = inertial(vehicle).topic
         self._sensors = {sensor.name: sensor.topic.name for sensor in used_sensors(vehicle)}
         self.inputs = sensor_inputs(vehicle)
         self._faults: Sequence[UvmsError] = ()
@@ -58,7 +58,7 @@ class NavigationPart(Part):
         self._known = True
         self._unknown = LOST
         self._doubted: Odometry | None = None
-        self._certain = CERTAIN * vehicle.sensors.gps.horizontal_noise_m + CERTAIN
+        self._certain = CERTAIN * _fix_noise(vehicle) + CERTAIN
         self._remembered: list[Odometry] = []
         self._good: Odometry | None = None
         self.estimate: Odometry | None = None
@@ -146,10 +146,15 @@ class NavigationPart(Part):
         faults, self._faults = self._faults, ()
         return faults
 
-    def status(self) -> dict[str, int | float]:
+    def status(self) -> dict[str, int | float | str]:
         """Counters and uncertainty of the filter."""
         status = self.filter.status()
         return {_STATUS.get(name, name): value for name, value in status.items()}
+
+
+def _fix_noise(vehicle: Vehicle) -> float:
+    """Std of a GPS fix north and east, m; without a receiver none."""
+    return 0.0 if vehicle.sensors.gps is None else vehicle.sensors.gps.horizontal_noise_m
 
 
 _STATUS = {"refused": "samples_refused", "late": "samples_late"}

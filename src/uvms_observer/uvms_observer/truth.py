@@ -10,7 +10,7 @@ import numpy as np
 
 from uvms_core import topics
 from uvms_core.part import Output, Part
-from uvms_core.sensors import INERTIAL
+from uvms_core.sensors import inertial
 from uvms_core.signals import Odometry
 from uvms_core.tick_gate import Same, Tick
 from uvms_core.vehicle import Vehicle
@@ -32,11 +32,11 @@ class TruthPart(Part):
         period: of the control loop, ns.
     """
 
-    trigger = INERTIAL.topic
     outputs = topics.NODES[topics.NAVIGATION].outputs
 
     def __init__(self, vehicle: Vehicle, period: int) -> None:
         self.every = period
+        self.trigger = inertial(vehicle).topic
         self.inputs = {**sensor_inputs(vehicle), topics.TRUE_ODOMETRY: Same()}
         self.estimate: Odometry | None = None
         """The last one."""

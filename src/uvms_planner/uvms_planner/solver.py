@@ -35,6 +35,7 @@ from uvms_planner.whole_path import (
     Surroundings,
     ToolPath,
 )
+from uvms_planner.whole_path.coming_level import level_once_back
 from uvms_planner.whole_path.manipulability import best_manipulability, manipulability
 from uvms_planner.whole_path.path_problem import Path
 from uvms_planner.whole_path.solve import Progress
@@ -150,8 +151,9 @@ class StepSolver:
 
     def plan_path(self, problem: PathProblem, progress: Progress) -> PathPlan:
         """The method's plan over a whole path; only where `plans_paths`."""
-        plan: PathPlan = self._method.plan_path(problem, progress)  # type: ignore[attr-defined]
-        return plan
+        limits = self.motion_limits
+        method = self._method.plan_path  # type: ignore[attr-defined]
+        return level_once_back(problem, (limits.roll_max, limits.pitch_max), method, progress)
 
     def problem(
         self,

@@ -69,3 +69,12 @@ def test_the_first_window_keeps_every_limit(vehicle):
         times = np.linspace(0.0, window.duration, round(1e3 * window.duration) + 1)
         worst = first.plan.report_at(times).worst
         assert worst.share <= 1.001, worst
+
+
+def test_a_window_of_a_tool_that_keeps_its_orientation_is_known_to_keep_its_limits():
+    problem = problem_of({**CIRCLE, "orientation": "keep"})
+    plan = solve(problem)
+    assert plan.report.feasible
+    whole = TimedPlan(0.0, plan)
+    plans = driven(PathWindow(problem), problem.start, 3.0, whole)
+    assert all(each.feasible and each.plan.report.feasible for each in plans)

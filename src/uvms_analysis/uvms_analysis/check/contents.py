@@ -15,6 +15,7 @@ from uvms_analysis.log.definition import UNDECODABLE
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.run_end import RunEnd
 from uvms_core import topics
+from uvms_core.errors import UvmsError
 from uvms_core.messages import from_message
 from uvms_core.signals import NANOSECONDS
 from uvms_core.topic import Topic
@@ -48,6 +49,7 @@ class Contents:
         self.unusable: dict[str, str] = {}
         self.topics = {name: Topics(type_name) for name, type_name in log.topics.items()}
         self._decoded: dict[str, Topic] = {}  # what the log holds as signals already
+        self._ours = _topics_of(log)
         self._readers = {
             name: reader for name in self.topics if (reader := self._reader(name)) is not None
         }
@@ -99,7 +101,7 @@ class Contents:
         """Topic and decoder of a full topic name that is one of ours, else None."""
         log = self.log
         short = name.removeprefix(f"/{log.namespace}/" if log.namespace else "/")
-        topic = topics.BY_NAME.get(name) or topics.BY_NAME.get(short)
+        topic = self._ours.get(name) or self._ours.get(short)
         if topic is None or topic.signal is None or topic is topics.TF:  # which is only written
             return None
         if log.is_loaded(topic) and topic is not topics.DIAGNOSTICS:
@@ -146,3 +148,11 @@ def _names(message: Any) -> tuple[str, ...]:
         if hasattr(message, field_name):
             return tuple(map(str, getattr(message, field_name)))
     return ()
+
+
+def _topics_of(log: RunLog) -> dict[str, Topic]:
+    """Topics of a run by name; where its vehicle cannot be read, those of the built-in sensors."""
+    try:
+        return {topic.name: topic for topic in topics.of(log.vehicle)}
+    except UvmsError:  # a finding of its own
+        return topics.BY_NAME

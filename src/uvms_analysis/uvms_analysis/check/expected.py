@@ -8,7 +8,7 @@ from uvms_analysis.check.contents import Contents
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_core import topics
-from uvms_core.sensors import sensor_types
+from uvms_core.sensors import mounted_sensors
 from uvms_core.signals import to_nanoseconds
 from uvms_core.topic import Topic
 
@@ -48,9 +48,8 @@ def rhythms(contents: Contents) -> Rhythms | None:
         return None
     tick, step = _period(config, "plant.control_period_s"), _period(config, "planner.step_s")
     found = {each: Rhythm(tick) for each in topics.of(vehicle) if not each.is_occasional}
-    for sensor in sensor_types(vehicle):
-        rate = vehicle.sensors.mounted[sensor.name].rate_hz
-        found[sensor.topic] = Rhythm(to_nanoseconds(1.0 / rate))
+    for sensor in mounted_sensors(vehicle):
+        found[sensor.topic] = Rhythm(to_nanoseconds(1.0 / sensor.section.rate_hz))
     # At the first step the planner plans two steps ahead, at each of the others one.
     found[topics.REFERENCE] = Rhythm(step, extra=1)
     found |= {topic: Rhythm(0, extra=1) for topic in LATCHED}
@@ -67,11 +66,9 @@ def _with_gaps(log: RunLog) -> Iterator[Topic]:
     """
     gaps = log.signals(topics.SENSOR_GAPS) if log.has(topics.SENSOR_GAPS) else []
     names = {name for each in gaps for name in each.sensors}
-    for sensor in sensor_types(log.vehicle):
-        if sensor.name in names:
-            yield sensor.topic
-    if topics.ENCODERS in names:
-        yield topics.JOINT_STATES
+    for name, topic in topics.sampled_topics(log.vehicle).items():
+        if name in names:
+            yield topic
 
 
 def _period(config: Mapping[str, Any], path: str) -> int:

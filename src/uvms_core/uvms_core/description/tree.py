@@ -19,7 +19,7 @@ import numpy as np
 from uvms_core import topics
 from uvms_core.errors import VehicleFileError
 from uvms_core.rotations import quat_to_matrix, rpy_to_quat
-from uvms_core.sensors import sensor_types
+from uvms_core.sensors import mounted_sensors
 from uvms_core.signals import Array
 from uvms_core.vehicle.arm import Joint
 from uvms_core.vehicle.frames import (
@@ -92,9 +92,8 @@ def basis(axis: Array, column: int) -> Array:
 
 
 def _sensors(vehicle: Vehicle) -> Iterator[Branch]:
-    mounted = vehicle.sensors.mounted
-    for sensor in sensor_types(vehicle):
-        pose = np.array(mounted[sensor.name].position_m), np.eye(3)
+    for sensor in mounted_sensors(vehicle):
+        pose = np.array(sensor.section.position_m), sensor.mounting.to_body
         yield Branch(sensor.mounting_frame, topics.BODY_FRAME, pose)
 
 

@@ -37,20 +37,37 @@ def check_frame(topic: Topic, header: Any) -> None:
     if header.frame_id != topic.frame:
         raise SignalError(
             f"{topic.name}: header.frame_id is {_short(header.frame_id)!r};"
-            f" it must be {topic.frame!r}"
+            f" it must be {topic.frame!r}{_remedy(topic)}"
         )
 
 
+def _remedy(topic: Topic) -> str:
+    """How to have another frame id."""
+    field = f"sensors.{topic.sensor}.frame_id"
+    return f", or what {field} in the vehicle file says" if topic.sensor else ""
+
+
 def to_map_ned(topic: Topic, header: Any) -> Array:
-    """The matrix (3, 3) from the axes of a header's frame, map_ned or map, to those of map_ned."""
+    """The matrix (3, 3) from the axes of a header's frame to those of map_ned.
+
+    The frame is map_ned, map, or the topic's own.
+    """
     if header.frame_id == WORLD_FRAME:
         return np.eye(3)
     if header.frame_id == MAP_FRAME:
         return R_MAP_MAP_NED.T
+    if header.frame_id == topic.frame:
+        return R_MAP_MAP_NED.T if topic.is_enu else np.eye(3)
     raise SignalError(
         f"{topic.name}: header.frame_id is {_short(header.frame_id)!r}; it must be"
-        f" {WORLD_FRAME!r} or {MAP_FRAME!r}"
+        f" {WORLD_FRAME!r} or {MAP_FRAME!r}{_remedy(topic)}"
     )
+
+
+def from_map_ned(topic: Topic) -> Array:
+    """The matrix (3, 3) from the axes of map_ned to those of the topic's frame of the world."""
+    is_enu = topic.frame == MAP_FRAME or (topic.frame != WORLD_FRAME and topic.is_enu)
+    return R_MAP_MAP_NED if is_enu else np.eye(3)
 
 
 def check_child_frame(topic: Topic, frame: str) -> None:
@@ -137,6 +154,17 @@ def floats(topic: Topic | Action, path: str, values: Any, count: int) -> Array:
 def covariance(topic: Topic | Action, path: str, values: Any, size: int) -> Array:
     """A row-major covariance as an array (size, size), finite."""
     return floats(topic, path, values, size * size).reshape(size, size)
+
+
+UNKNOWN = -1.0
+"""First element of a covariance that is not known, as sensor_msgs has it; all zeros mean the same
+there."""
+
+
+def stated_covariance(topic: Topic | Action, path: str, values: Any, size: int) -> Array:
+    """As `covariance`; all zeros where the message says that it does not know it."""
+    found = covariance(topic, path, values, size)
+    return np.zeros((size, size)) if found[0, 0] == UNKNOWN else found
 
 
 def order(topic: Topic | Action, path: str, given: Sequence[str], names: Sequence[str]) -> Any:

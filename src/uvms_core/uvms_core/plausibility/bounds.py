@@ -87,14 +87,21 @@ ANYTHING = 1e12
 
 def bounds_of(vehicle: Vehicle, topic: Topic) -> Rule:
     """The rule of a topic; one of finite numbers alone where its signal is not ours."""
+    measured = _OF_SENSORS.get(topic.signal) if topic.signal is not None else None
+    if measured is not None:
+        return measured(vehicle, scale_of(vehicle), _section(vehicle, topic))
     make = _RULES.get(topic.signal) if topic.signal is not None else None
     if topic.name in _BY_TOPIC:
         make = _BY_TOPIC[topic.name]
     return _of_anything(topic.signal) if make is None else make(vehicle, scale_of(vehicle))
 
 
-def _imu(vehicle: Vehicle, scale: Scale) -> Rule:
-    imu = vehicle.sensors.imu
+def _section(vehicle: Vehicle, topic: Topic) -> Any:
+    """Section of the vehicle file with the sensor whose samples are on a topic."""
+    return vehicle.sensors.mounted[topic.sensor]
+
+
+def _imu(vehicle: Vehicle, scale: Scale, imu: Any) -> Rule:
     noise = NOISES * np.radians(max(imu.roll_pitch_noise_deg, imu.heading_noise_deg))
     force = SPECIFIC_FORCE * vehicle.environment.gravity_m_s2
     nu_dot, lever = agility_of(vehicle).nu_dot, float(np.linalg.norm(imu.position_m))
@@ -129,9 +136,9 @@ def _own_turn(imu: signals.ImuSample, elapsed_s: float) -> Array:
     return slack
 
 
-def _dvl(vehicle: Vehicle, scale: Scale) -> Rule:
+def _dvl(vehicle: Vehicle, scale: Scale, dvl: Any) -> Rule:
     """The transducer moves with the hull: its lever times the rate comes on top."""
-    dvl, nu_dot = vehicle.sensors.dvl, agility_of(vehicle).nu_dot
+    nu_dot = agility_of(vehicle).nu_dot
     lever = float(np.linalg.norm(dvl.position_m))
     speed = scale.speed + scale.rate * lever
     rate = nu_dot[:3] + float(np.max(nu_dot[3:])) * lever
@@ -145,8 +152,8 @@ def _own_speed(dvl: signals.DvlSample, elapsed_s: float) -> Array:
     return np.full(3, float(np.linalg.norm(dvl.velocity)))
 
 
-def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
-    sea, sensor = vehicle.environment, vehicle.sensors.pressure
+def _pressure(vehicle: Vehicle, scale: Scale, sensor: Any) -> Rule:
+    sea = vehicle.environment
     metre = sea.water_density_kg_m3 * sea.gravity_m_s2
     noise = NOISES * (sensor.noise_pa + sensor.bias_pa)
     speed = scale.speed + scale.rate * float(np.linalg.norm(sensor.position_m))
@@ -156,7 +163,7 @@ def _pressure(vehicle: Vehicle, scale: Scale) -> Rule:
     return Rule((Bound("pressure", low, high, 1, "Pa", rate=metre * speed, slack=jump),))
 
 
-def _gps(vehicle: Vehicle, scale: Scale) -> Rule:
+def _gps(vehicle: Vehicle, scale: Scale, gps: Any) -> Rule:
     return Rule(
         (
             Bound("latitude_deg", -90.0, 90.0, 0, "deg", only_if="fix"),
@@ -342,11 +349,14 @@ def _wrench(force: float, scale: Scale) -> Array:
 
 
 _Maker = Callable[[Vehicle, Scale], Rule]
-_RULES: dict[Any, _Maker] = {
+_OF_SENSORS: dict[Any, Callable[[Vehicle, Scale, Any], Rule]] = {
     signals.ImuSample: _imu,
     signals.DvlSample: _dvl,
     signals.PressureSample: _pressure,
     signals.GpsSample: _gps,
+}
+"""Of samples; the section of the vehicle file with their sensor comes third."""
+_RULES: dict[Any, _Maker] = {
     signals.JointStates: _joints,
     signals.Odometry: _odometry,
     signals.JointCommand: _joint_command,

@@ -121,7 +121,8 @@ class UvmsNode(Node):
         gate = TickGate(by_name, trigger.name, self.lockstep, in_loop, every)
         plans = [topic.name for topic, rule in inputs.items() if isinstance(rule, Covering)]
         timeline = Timeline(self.period, plans)
-        self._intake = Intake(gate, timeline, self.plausibility, self.on_time_jump)
+        sampled = topics.sampled_topics(self.vehicle)
+        self._intake = Intake(gate, timeline, self.plausibility, self.on_time_jump, sampled)
         self._on_tick = on_tick
         waits = any(isinstance(rule, Delayed | Periodic) for rule in inputs.values())
         for topic in (*inputs, topics.SENSOR_GAPS) if waits else inputs:

@@ -1,4 +1,4 @@
-"""Kinds of sensors: those that every vehicle has, and those that other packages bring.
+"""Kinds of sensors: those that are built in, and those that other packages bring.
 
 A sensor is a model (entry point in `uvms.sensors`), whose attribute `type` is its `SensorType`, and
 a measurement of the navigation filter (entry point in `uvms.measurements`).
@@ -7,13 +7,26 @@ a measurement of the navigation filter (entry point in `uvms.measurements`).
 from uvms_core import registry
 from uvms_core.errors import PluginError
 from uvms_core.sensors import dvl, gps, imu, pressure
+from uvms_core.sensors.mounted import MountedSensor
+from uvms_core.sensors.mounting import Axes
 from uvms_core.sensors.type import SensorType
+from uvms_core.vehicle.further_sensors import kind_of
 from uvms_core.vehicle.vehicle import Vehicle
 
-__all__ = ["BUILT_IN", "INERTIAL", "SensorType", "sensor_type", "sensor_types"]
+__all__ = [
+    "BUILT_IN",
+    "INERTIAL",
+    "Axes",
+    "MountedSensor",
+    "SensorType",
+    "inertial",
+    "mounted_sensors",
+    "sensor_type",
+]
 
 BUILT_IN: tuple[SensorType, ...] = (imu.TYPE, dvl.TYPE, pressure.TYPE, gps.TYPE)
-"""The sensors of every vehicle, in the order in which navigation takes samples of one stamp."""
+"""The kinds that every installation knows, in the order in which navigation takes samples of one
+stamp."""
 
 INERTIAL = imu.TYPE
 """Carries the estimate from stamp to stamp; its samples start the ticks of navigation."""
@@ -38,6 +51,14 @@ def sensor_type(name: str) -> SensorType:
     return found
 
 
-def sensor_types(vehicle: Vehicle) -> tuple[SensorType, ...]:
-    """The kinds of sensors of a vehicle, in the order of its sections; raises as `sensor_type`."""
-    return tuple(sensor_type(name) for name in vehicle.sensors.mounted)
+def mounted_sensors(vehicle: Vehicle) -> tuple[MountedSensor, ...]:
+    """The sensors of a vehicle, in the order of its sections; raises as `sensor_type`."""
+    return tuple(
+        MountedSensor(name, sensor_type(kind_of(name, section)), section)
+        for name, section in vehicle.sensors.mounted.items()
+    )
+
+
+def inertial(vehicle: Vehicle) -> MountedSensor:
+    """The inertial unit of a vehicle."""
+    return MountedSensor(INERTIAL.name, INERTIAL, vehicle.sensors.imu)

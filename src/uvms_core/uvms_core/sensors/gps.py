@@ -14,7 +14,7 @@ from uvms_core.vehicle.sensors import Gps
 
 STATUS_NO_FIX, STATUS_FIX = -1, 0
 SERVICE_GPS = 1
-COVARIANCE_KNOWN = 3
+COVARIANCE_UNKNOWN, COVARIANCE_KNOWN = 0, 3
 
 _SWAP = [1, 0, 2]
 _SIGNS = np.outer((1.0, 1.0, -1.0), (1.0, 1.0, -1.0))
@@ -42,13 +42,16 @@ def to_message(topic: Topic, sample: GpsSample, names: Sequence[str]) -> Plain:
 
 
 def from_message(topic: Topic, msg: Any, names: Sequence[str]) -> GpsSample:
-    """From sensor_msgs/NavSatFix; without a fix the position may be NaN."""
+    """From sensor_msgs/NavSatFix; without a fix position and covariance may be NaN."""
     fields.check_frame(topic, msg.header)
     fix = msg.status.status >= STATUS_FIX
     if fix:
         for field in ("latitude", "longitude", "altitude"):
             fields.number(topic, field, getattr(msg, field))
-    covariance = fields.covariance(topic, "position_covariance", msg.position_covariance, 3)
+    covariance, path = np.zeros((3, 3)), "position_covariance"
+    is_stated = msg.position_covariance_type != COVARIANCE_UNKNOWN
+    if is_stated and (fix or np.isfinite(msg.position_covariance).all()):
+        covariance = fields.stated_covariance(topic, path, msg.position_covariance, 3)
     return GpsSample(
         fields.stamp_of(msg.header.stamp),
         fix,

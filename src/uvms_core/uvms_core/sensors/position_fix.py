@@ -13,13 +13,13 @@ from uvms_core.sensors.type import SensorType
 from uvms_core.signals import Array, Array3
 from uvms_core.start import Coordinate
 from uvms_core.topic import WORLD_FRAME, Topic
-from uvms_core.vehicle.further_sensors import Sensor
+from uvms_core.vehicle.further_sensors import WorldSensor
 
 UNKNOWN = -1.0
 """Variance of the attitude, which such a sensor does not measure."""
 
 
-class PositionFix(Sensor):
+class PositionFix(WorldSensor):
     """Section `sensors.position_fix` of the vehicle file, which may be left out."""
 
     noise_m: float = Field(gt=0.0, description="white noise north and east, m")
@@ -50,12 +50,13 @@ class FixSample:
 
 
 def to_message(topic: Topic, sample: FixSample, names: Sequence[str]) -> Plain:
-    """geometry_msgs/PoseWithCovarianceStamped in map_ned; the attitude is marked unknown."""
+    """geometry_msgs/PoseWithCovarianceStamped; the attitude is marked unknown."""
+    R = fields.from_map_ned(topic)
     covariance = np.zeros((6, 6))
-    covariance[:3, :3] = sample.covariance
+    covariance[:3, :3] = R @ sample.covariance @ R.T
     covariance[[3, 4, 5], [3, 4, 5]] = UNKNOWN
     level = np.array([0.0, 0.0, 0.0, 1.0])
-    pose = {"position": parts.vector(sample.position), "orientation": parts.quaternion(level)}
+    pose = {"position": parts.vector(R @ sample.position), "orientation": parts.quaternion(level)}
     return {
         "header": parts.header(topic, sample.stamp),
         "pose": {"pose": pose, "covariance": covariance.ravel()},

@@ -4,8 +4,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from uvms_core.sensors.mounting import NO_AXES, Axes, Declared
 from uvms_core.topic import SENSORS, Conversion, Topic
 from uvms_core.vehicle.sensors import Sensor
+
+
+def nothing(section: Sensor) -> Declared:
+    """Messages carry the whole sample."""
+    return ()
 
 
 @dataclass(frozen=True)
@@ -23,6 +29,11 @@ class SensorType:
         from_message: from topic, message and names to a sample; raises SignalError.
         frame: of the message's header; empty: that in which the sensor is mounted.
         navigation: whether the navigation filter uses it, so that it needs a measurement.
+        axes: which fields of a sample are along the sensor's axes. `from_message` leaves them as
+            the driver published them; they are turned to the body's after it, as the vehicle file
+            declares, and before `to_message`.
+        declared: fields of a sample that messages do not carry, with their values, by its section.
+        others: other types of message that a section may name in its field `message`.
     """
 
     name: str
@@ -33,6 +44,14 @@ class SensorType:
     from_message: Callable[[Topic, Any, Sequence[str]], Any]
     frame: str = ""
     navigation: bool = True
+    axes: Axes = NO_AXES
+    declared: Callable[[Any], Declared] = nothing
+    others: tuple[tuple[str, Conversion], ...] = ()
+
+    def conversion_of(self, message: str) -> Conversion:
+        """To and from messages of a type, in the axes of the driver."""
+        own = Conversion(self.to_message, self.from_message)
+        return dict(self.others).get(message, own)
 
     @property
     def mounting_frame(self) -> str:
@@ -48,4 +67,5 @@ class SensorType:
             self.signal,
             self.frame or self.mounting_frame,
             conversion=Conversion(self.to_message, self.from_message),
+            sensor=self.name,
         )

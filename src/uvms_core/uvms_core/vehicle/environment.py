@@ -2,7 +2,7 @@
 
 from pydantic import Field
 
-from uvms_core.vehicle.parts import Part
+from uvms_core.vehicle.parts import Part, Vector3
 
 
 class Environment(Part):
@@ -26,4 +26,9 @@ class Environment(Part):
     )
     datum_longitude_deg: float = Field(
         ge=-180.0, le=180.0, description="longitude of the origin of map_ned, degrees"
+    )
+    magnetic_field_ut: Vector3 | None = Field(
+        default=None,
+        description="the Earth's magnetic field at the site: north, east, down, microtesla, as the"
+        " World Magnetic Model gives it; a magnetometer needs it",
     )

@@ -28,6 +28,8 @@ def _replaced(node: Any, parts: list[str], value: Any, path: str, done: str) -> 
     keys = _keys(node)
     if done == SENSORS:
         keys |= {name: name for name in registry.names(registry.SENSORS)}
+        if len(parts) == 1 and isinstance(value, Mapping) and "type" in value:
+            keys.setdefault(parts[0], parts[0])  # of a kind that it names, under any name
     key = keys.get(parts[0])
     if key is None:
         where = done or "the vehicle file"

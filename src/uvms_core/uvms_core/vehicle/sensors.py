@@ -12,11 +12,17 @@ section requires are none by default.
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
-from uvms_core.vehicle.further_sensors import Sensor, further_sections, section_class
+from uvms_core.vehicle.further_sensors import (
+    Sensor,
+    WorldSensor,
+    further_sections,
+    kind_of,
+    section_class,
+)
 from uvms_core.vehicle.parts import Part
 
 __all__ = ["Dvl", "Encoders", "Gps", "Imu", "Instrument", "Pressure", "Sensor", "Sensors"]
@@ -65,9 +71,14 @@ class Instrument(Sensor, Outlying):
     """A built-in sensor that is mounted on the body."""
 
 
-class Imu(Instrument):
-    """Gyrocompass and inertial unit, axes parallel to the body's; biases are Gauss-Markov."""
+class Imu(Instrument, WorldSensor):
+    """Gyrocompass and inertial unit; biases are Gauss-Markov."""
 
+    orientation: bool = Field(
+        default=True,
+        description="whether it measures the attitude; if not, its noise and bias may be left out,"
+        " and the vehicle needs a sensor of the heading",
+    )
     roll_pitch_noise_deg: float = Field(ge=0.0, description="white noise of roll and pitch, deg")
     roll_pitch_bias_deg: float = Field(ge=0.0, description="std of their bias, deg")
     heading_noise_deg: float = Field(ge=0.0, description="white noise of the heading, deg")
@@ -90,12 +101,36 @@ class Imu(Instrument):
     accelerometer_resolution_m_s2: float = _resolution("the specific force", "m/s^2")
     accelerometer_outlier_m_s2: float = _outlier("the specific force along each axis", "m/s^2")
 
+    @model_validator(mode="before")
+    @classmethod
+    def _attitude_only_if_measured(cls, data: Any) -> Any:
+        if isinstance(data, Mapping) and data.get("orientation") is False:
+            return {**dict.fromkeys(_OF_ATTITUDE, 0.0), **data}
+        return data
+
+
+_OF_ATTITUDE = (
+    "roll_pitch_noise_deg",
+    "roll_pitch_bias_deg",
+    "heading_noise_deg",
+    "heading_bias_deg",
+)
+
 
 class Dvl(Instrument):
-    """Doppler velocity log with bottom lock, axes parallel to the body's.
+    """Doppler velocity log; without lock there is no sample."""
 
-    Without bottom lock there is no sample.
-    """
+    message: Literal[
+        "geometry_msgs/msg/TwistWithCovarianceStamped", "marine_acoustic_msgs/msg/Dvl"
+    ] = Field(
+        default="geometry_msgs/msg/TwistWithCovarianceStamped",
+        description="type of its messages; marine_acoustic_msgs must be installed for the second",
+    )
+    lock: Literal["bottom", "water"] = Field(
+        default="bottom",
+        description="against what it measures where its messages do not say: the bottom, or the"
+        " water",
+    )
 
     noise_m_s: float = Field(ge=0.0, description="white noise per axis and sample, m/s")
     scale_error: float = Field(ge=0.0, description="std of the constant scale error, a fraction")
@@ -163,19 +198,25 @@ class Encoders(Outlying):
     outlier_deg: float = _outlier("each angle", "deg")
 
 
-class Sensors(Part):
-    """All sensors of the vehicle: the built-in ones, and any that an installed package brings.
+BUILT_IN: dict[str, type[Sensor]] = {"imu": Imu, "dvl": Dvl, "pressure": Pressure, "gps": Gps}
+"""Sections of the sensors that every installation knows, by kind."""
 
-    The section of a further sensor has the name under which the package registers it in
-    `uvms.sensors`.
+
+class Sensors(Part):
+    """All sensors of the vehicle; only the inertial unit and the encoders must be there.
+
+    The section of a further sensor has the name under which a package registers it in
+    `uvms.sensors`, or any other name and that as its `type`: a vehicle may have two of a kind.
     """
 
     model_config = ConfigDict(extra="allow")
 
     imu: Imu = Field(description="gyrocompass and inertial unit")
-    dvl: Dvl = Field(description="Doppler velocity log")
-    pressure: Pressure = Field(description="depth from pressure")
-    gps: Gps = Field(description="satellite receiver")
+    dvl: Dvl | None = Field(default=None, description="Doppler velocity log; none: it has none")
+    pressure: Pressure | None = Field(
+        default=None, description="depth from pressure; none: it has none"
+    )
+    gps: Gps | None = Field(default=None, description="satellite receiver; none: it has none")
     encoders: Encoders = Field(description="joint encoders")
 
     @property
@@ -188,8 +229,22 @@ class Sensors(Part):
     def _check_further(cls, data: Any) -> Any:
         if not isinstance(data, Mapping):
             return data
-        further = {name: data[name] for name in data if name not in cls.model_fields}
-        return {**data, **further_sections(further, tuple(cls.model_fields))}
+        own = {name: value for name, value in data.items() if name in cls.model_fields}
+        further = {name: data[name] for name in data if name not in own and data[name] is not None}
+        return {**own, **further_sections(further, BUILT_IN)}
+
+    @model_validator(mode="after")
+    def _one_inertial_unit(self) -> "Sensors":
+        for name, section in self.mounted.items():
+            kind = kind_of(name, section)
+            if name != "imu" and kind == "imu":
+                raise ValueError(
+                    f"{name} is a second imu: one inertial unit alone carries the estimate. Give"
+                    " its attitude as a sensor of type heading, or leave it out"
+                )
+            if name in BUILT_IN and kind != name:
+                raise ValueError(f"{name}.type is {kind!r}; a section of this name is a {name}")
+        return self
 
     @classmethod
     def field_model(cls, name: str) -> type[BaseModel] | None:

@@ -1,6 +1,6 @@
 """The whole vehicle as its file describes it."""
 
-from pydantic import Field, field_validator
+from pydantic import Field, field_validator, model_validator
 
 from uvms_core.vehicle.arm import Arm
 from uvms_core.vehicle.environment import Environment
@@ -34,6 +34,15 @@ class Vehicle(Part):
     def _named_once(cls, value: tuple[Thruster, ...]) -> tuple[Thruster, ...]:
         unique_names(value, "thruster")
         return value
+
+    @model_validator(mode="after")
+    def _sensors_suit_the_site(self) -> "Vehicle":
+        for name, section in self.sensors.mounted.items():
+            try:
+                section.check_site(self.environment)
+            except ValueError as fault:
+                raise ValueError(f"sensors.{name}: {fault}") from fault
+        return self
 
     @property
     def n_joints(self) -> int:

@@ -1,10 +1,14 @@
 """The state at the start: attitude of the first IMU sample, position of the configuration."""
 
+from collections.abc import Callable
+from dataclasses import replace
+
 import numpy as np
 
 from uvms_core.signals import Array, ImuSample, Odometry
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.installation import Installation
+from uvms_observer.navigation.levelling import level, level_variance
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     ATTITUDE,
@@ -46,6 +50,25 @@ def aligned(
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias
     P[COMPASS_BIAS, ATTITUDE] = -bias @ R.T
     return state
+
+
+def levelled(
+    sample: ImuSample, imu: Installation, heading: Callable[[Array], tuple[float, float] | None]
+) -> tuple[ImuSample, Installation]:
+    """A sample with the attitude that gravity and a heading give, and the unit, so uncertain.
+
+    Args:
+        sample: without attitude.
+        imu: the unit.
+        heading: gives the heading and its variance for an attitude (4,) with heading zero.
+    """
+    force = sample.linear_acceleration
+    angle, variance = heading(level(force)) or (0.0, np.pi**2)
+    tilt = level_variance(imu.gravity, imu.force_noise, float(imu.process.variance[3]))
+    return (
+        replace(sample, quaternion=level(force, angle)),
+        imu._replace(attitude_variance=np.array([tilt, tilt, variance])),
+    )
 
 
 def _go_on_from(

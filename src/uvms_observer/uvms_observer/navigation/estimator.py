@@ -1,25 +1,26 @@
 """The filter proper: a state at a time, which samples carry forward and correct, one by one."""
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from copy import copy
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
-from uvms_observer.navigation import undecided
-from uvms_observer.navigation.alignment import aligned
+from uvms_observer.navigation import consistency, undecided
+from uvms_observer.navigation.alignment import aligned, levelled
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
 from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
-from uvms_observer.navigation.innovation_gate import InnovationGate, Tally, accepted
+from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.imu import Gyrocompass
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
-from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S
+from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
 from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import (
     INERTIAL_BIASES,
@@ -31,6 +32,7 @@ from uvms_observer.navigation.state import (
 from uvms_observer.navigation.undecided import Doubt
 from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
 
+LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
 """Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
 vehicle that was pushed."""
@@ -67,9 +69,11 @@ class Estimator:
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
+        self._heading: Reading | None = None  # last one before the start
         self._rate = np.zeros(3)  # last readings of the IMU that are believed
         self._force = np.zeros(3)
         self._inertial = 0  # ns, stamp of the last IMU sample
+        self._sample: ImuSample | None = None  # that sample
         self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise)
         self._memory: ScreenMemory = remember(self._rate, self._force)
 
@@ -81,6 +85,21 @@ class Estimator:
         other._doubts = dict(self._doubts)
         return other
 
+    def look_for_heading(self, readings: Iterable[Reading]) -> None:
+        """Before the start: remember a heading, which an inertial unit without attitude needs."""
+        for reading in readings:
+            measurement = self._measurements[reading.name]
+            if measurement.usable(reading.sample) and reading.name != INERTIAL.name:
+                found = measurement.heading(reading.sample, LEVEL)
+                self._heading = self._heading if found is None else reading
+
+    def can_begin(self, readings: Iterable[Reading]) -> bool:
+        """Whether an attitude follows from these readings, and a heading known by now."""
+        return any(
+            each.name == INERTIAL.name and (each.sample.oriented or self._heading is not None)
+            for each in readings
+        )
+
     def take(self, reading: Reading) -> None:
         """Go to the reading's stamp and use it; before the first IMU sample others are ignored."""
         inertial = reading.name == INERTIAL.name
@@ -90,6 +109,8 @@ class Estimator:
         elif inertial:
             if not self._take_at_once(reading):
                 self._carry(reading.sample)
+                if not self._measurements[reading.name].usable(reading.sample):
+                    return
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
@@ -106,14 +127,23 @@ class Estimator:
             open_ones = [(each, self.tallies[name]) for name, each in self._doubts.items()]
             wider = undecided.widened(state.covariance, open_ones, self.time or 0)
             state = state if wider is None else state._replace(covariance=wider)
+        if beyond := self.inconsistent():
+            state = state._replace(covariance=max(beyond.values()) * state.covariance)
         return odometry(self.time or 0, state, imu.body, self._rate, imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        self.state = aligned(sample, self._imu, self._config, self.start)
+        imu = self._imu
+        if not sample.oriented:
+            if self._heading is None:
+                return
+            name, heading = self._heading.name, self._heading.sample
+            sample, imu = levelled(sample, imu, partial(self._measurements[name].heading, heading))
+        self.state = aligned(sample, imu, self._config, self.start)
         for each in self._measurements.values():
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance
         self.time = self._inertial = sample.stamp
+        self._sample = sample
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
         self._memory = remember(self._rate, self._force)
 
@@ -124,6 +154,8 @@ class Estimator:
         if compass is None or tally.row or self._memory.row or gone > GAP * imu.period:
             return False
         sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
+        if not sample.oriented:
+            return False
         rate_limit, force_limit = self._screen.limits(gone)
         rate, force = sample.angular_velocity, sample.linear_acceleration
         distance, mean = take_inertial(
@@ -133,14 +165,14 @@ class Estimator:
             to_seconds(reading.stamp - time),
             imu.gravity,
             *imu.process,
-            *(sample.quaternion, compass.variance, gate.limit, tally.mean, gate.keep),
+            *(sample.quaternion, compass.variance_of(sample), gate.limit, tally.mean, gate.keep),
         )
         if distance == UNUSUAL:
             return False
         self.time, self._inertial = max(time, reading.stamp), reading.stamp
-        self._rate, self._force = rate, force
+        self._rate, self._force, self._sample = rate, force, sample
         if distance <= gate.limit:
-            self.tallies[reading.name] = accepted(tally, reading.stamp, distance, mean)
+            self.tallies[reading.name] = gate.accepted(tally, reading.stamp, distance, mean)
         else:
             self._reject(reading, gate.rejected(tally, reading.stamp, self.state.innovation))
         return True
@@ -155,6 +187,7 @@ class Estimator:
         )
         self._propagate(sample.stamp, screened.rate, screened.force)
         self._rate, self._force, self._inertial = screened.rate, screened.force, sample.stamp
+        self._sample = sample
         if screened.turn is not None and screened.change is not None:
             spread(tuple(self.state), screened.turn, screened.change, dt)
         if screened.owed is not None:
@@ -174,6 +207,35 @@ class Estimator:
         if (gone := to_seconds(stamp - self._inertial)) > GAP * imu.period:
             unknown = gap_spread(to_seconds(begin - self._inertial), gone, imu.gravity)
             spread(tuple(self.state), *unknown, dt)
+
+    def inconsistent(self) -> dict[str, float]:
+        """How far beyond chance the levels of sensors are, as a factor; of those that are."""
+        return {
+            name: tally.level / self._gates[name].bound
+            for name, tally in self.tallies.items()
+            if tally.level > self._gates[name].bound
+        }
+
+    def restart(self, since: int) -> None:
+        """Give up what has been wrong since then (ns), and begin with the last inertial sample.
+
+        The position is still known as far as the vehicle cannot have moved since.
+        """
+        now = self.time or 0
+        here = lost(now, np.array(self._config.initial_position_m))
+        if consistency.is_sound(self.state):
+            moved = (LOST_SPEED_M_S * to_seconds(now - since)) ** 2
+            estimate = self.odometry()
+            pose = estimate.pose_covariance + moved * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+            here = replace(here, position=estimate.position, pose_covariance=pose)
+        self.start = here
+        self.tallies = {
+            name: Tally(tally.accepted, tally.gated) for name, tally in self.tallies.items()
+        }
+        self._doubts = {}
+        if self._sample is not None:
+            self._align(self._sample)
+            self.advance(now)
 
     def doubt_imu(self, times: float = 1.0) -> None:
         """Take the inertial biases to be unknown from now on, by so many times the usual fault."""

@@ -22,12 +22,13 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
-from uvms_observer.navigation import suspicion
+from uvms_observer.navigation import consistency, suspicion
 from uvms_observer.navigation.estimator import Estimator
 from uvms_observer.navigation.installation import installation
+from uvms_observer.navigation.levelling import check_gravity
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
-from uvms_observer.navigation.sensor_health import Health, health_of, trouble_of
+from uvms_observer.navigation.sensor_health import Health, health_of, joined, trouble_of
 from uvms_observer.navigation.state import NavigationState
 from uvms_observer.navigation.time_line import Step, replayed, with_late
 
@@ -52,6 +53,7 @@ class NavigationFilter:
         self._estimator = Estimator(
             imu, self._instruments.measurements, config, self._instruments.periods
         )
+        self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
         self._steps: deque[Step] = deque()
@@ -63,6 +65,7 @@ class NavigationFilter:
         self.late = 0
         self.corrected = 0
         self.normalized = 0
+        self.resets = 0
 
     @property
     def state(self) -> NavigationState:
@@ -117,7 +120,7 @@ class NavigationFilter:
             NotAlignedError: no IMU sample has come yet.
         """
         good, faults = self._screen(stamp, samples)
-        return self._step(stamp, good), faults
+        return self._step(stamp, good, faults), faults
 
     def _screen(
         self, stamp: int, groups: Mapping[str, Sequence[Any]]
@@ -128,6 +131,7 @@ class NavigationFilter:
         for reading in self._instruments.readings(groups):
             try:
                 self._check_stamp(reading, stamp, newest)
+                self._check_start(reading)
                 reading = self._of_unit_length(reading)
                 checks.check(reading.name, reading.sample)
             except SignalError as fault:
@@ -138,6 +142,11 @@ class NavigationFilter:
         self.rejected += len(faults)
         return good, faults
 
+    def _check_start(self, reading: Reading) -> None:
+        """An inertial unit that starts must feel gravity the right way round."""
+        if self._estimator.time is None and reading.name == INERTIAL.name:
+            check_gravity(reading.name, self._imu, reading.sample, self._gravity)
+
     def _of_unit_length(self, reading: Reading) -> Reading:
         """Some drivers round their quaternions; what is nearly a rotation is taken as one."""
         if reading.name != INERTIAL.name or not is_nearly_unit(reading.sample.quaternion):
@@ -146,9 +155,13 @@ class NavigationFilter:
         unit = reading.sample.quaternion / np.linalg.norm(reading.sample.quaternion)
         return reading._replace(sample=replace(reading.sample, quaternion=unit))
 
-    def _step(self, stamp: int, readings: list[Reading]) -> Odometry:
-        if self._estimator.time is None and INERTIAL.name not in {each.name for each in readings}:
-            raise NotAlignedError("navigation has had no IMU sample yet; it needs an attitude")
+    def _step(
+        self, stamp: int, readings: list[Reading], faults: Sequence[SignalError] = ()
+    ) -> Odometry:
+        if self._estimator.time is None:
+            self._estimator.look_for_heading(readings)
+            if not self._estimator.can_begin(readings):
+                raise NotAlignedError(_not_aligned(readings, faults))
         for reading in readings:
             self._newest[reading.name] = reading.stamp
         self._stamp = stamp
@@ -178,19 +191,25 @@ class NavigationFilter:
         }
 
     def trouble(self) -> Trouble | None:
-        """Which sensors are not used, and why."""
-        return trouble_of(self.health())
+        """Which sensors are not used, and why; whether the estimate is as good as it says."""
+        return joined(
+            trouble_of(self.health()),
+            consistency.trouble_of(self._estimator.inconsistent(), self.resets),
+        )
 
-    def status(self) -> dict[str, int | float]:
-        """Counters for diagnostics, and the uncertainty (std) of the position in m."""
-        counts: dict[str, int | float] = {"refused": self.rejected, "late": self.late}
+    def status(self) -> dict[str, int | float | str]:
+        """Counters for diagnostics, the uncertainty (std) of the position in m, what is missing."""
+        counts: dict[str, int | float | str] = {"refused": self.rejected, "late": self.late}
         for name, tally in self._estimator.tallies.items():
             counts[f"{name}_accepted"] = tally.accepted
             counts[f"{name}_gated"] = tally.gated
+            counts[f"{name}_level"] = round(tally.level, 2)
         counts["imu_held_back"], counts["imu_normalized"] = self._estimator.held, self.normalized
-        counts["corrected"] = self.corrected
+        counts["corrected"], counts["resets"] = self.corrected, self.resets
         variance = np.trace(self._estimator.state.covariance[:3, :3])
         counts["position_std_m"] = float(np.sqrt(variance))
+        if self._instruments.absent:
+            counts["not_mounted"] = ", ".join(self._instruments.absent)
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
@@ -213,6 +232,7 @@ class NavigationFilter:
         steps, self._estimator = replayed(self._estimator, [(readings, stamp)])
         self._steps.extend(steps)
         self._question(stamp)
+        self._reset_where_lost(stamp)
         while len(self._steps) > 1 and self._steps[1].begin < stamp - self._memory:
             self._steps.popleft()
 
@@ -227,6 +247,16 @@ class NavigationFilter:
             again.insert(0, self._steps.pop())
         steps, self._estimator = replayed(again[0].before, with_late(again, late))
         self._steps.extend(steps)
+
+    def _reset_where_lost(self, stamp: int) -> None:
+        """Begin anew where the estimate cannot be right: nothing that is known explains it."""
+        since = consistency.given_up(self._estimator.tallies, stamp)
+        if not consistency.is_sound(self._estimator.state):
+            since = stamp
+        if since is not None:
+            self._estimator.restart(since)
+            self._steps.clear()
+            self.resets += 1
 
     def _question(self, stamp: int) -> None:
         """Whether the estimate is wrong, where a sensor is rejected."""
@@ -244,3 +274,12 @@ class NavigationFilter:
                 self.corrected += 1
                 self._wait = suspicion.AGAIN
                 return
+
+
+def _not_aligned(readings: Sequence[Reading], faults: Sequence[SignalError]) -> str:
+    """Why the filter cannot start."""
+    if faults:
+        return f"navigation cannot start: {faults[0]}"
+    if any(each.name == INERTIAL.name for each in readings):
+        return "navigation cannot start: the imu gives no attitude, and no heading has come yet"
+    return "navigation has had no IMU sample yet; it needs an attitude"

@@ -88,7 +88,7 @@ class ImuScreen:
         return Screened(memory.rate, memory.force, *unknown, None, None), held
 
     def limits(self, dt: float) -> tuple[float, float]:
-        """Largest changes along an axis of rate, rad/s, and force, m/s^2, that agree, dt s apart."""
+        """Largest changes of rate, rad/s, and force, m/s^2, along an axis that agree after dt s."""
         return self._rate_jump + ANGULAR_JERK_RAD_S2 * dt, self._force_jump + JERK_M_S3 * dt
 
     def _agree(

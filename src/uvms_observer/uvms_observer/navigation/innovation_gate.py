@@ -17,6 +17,7 @@ import numpy as np
 from scipy.special import gammaincinv
 
 from uvms_core.signals import Array
+from uvms_observer.navigation import consistency
 from uvms_observer.navigation.state import WIDEST
 
 ROW = 3
@@ -67,6 +68,7 @@ class Tally(NamedTuple):
     distance: float = 0.0  # sum of the squared distances of those that were used
     mean: Array = np.zeros(WIDEST)  # running mean of their residuals, of std 1 in a right filter
     away: Away | None = None
+    level: float = 1.0  # running mean of the squared distances, in units of the size
 
     @property
     def excluded(self) -> bool:
@@ -90,6 +92,9 @@ class InnovationGate:
         # a sample less the running mean, which has a share LEVEL / (2 - LEVEL) of its variance
         self._jump = quantile(size, JUMP) * (1.0 + LEVEL / (2.0 - LEVEL))
         self.keep = 1.0 - 1.0 / max(FEW, WINDOW_S / period_s)
+        stays = consistency.keep_of(period_s)
+        self.bound = consistency.bound(size, stays)
+        self._new = 1.0 - stays
         self._weight = (1.0 - self.keep**2) ** 0.5
 
     def apply(
@@ -111,8 +116,14 @@ class InnovationGate:
         distance = correct(limit)
         if distance <= limit:
             mean = self.keep * tally.mean + self._weight * innovation[0] / _or_one(innovation[2])
-            return accepted(tally, stamp, distance, mean)
+            return self.accepted(tally, stamp, distance, mean)
         return self.rejected(tally, stamp, innovation, away)
+
+    def accepted(self, tally: Tally, stamp: int, distance: float, mean: Array) -> Tally:
+        """The tally after a sample that was used, of this distance, and the mean with it."""
+        level = tally.level + self._new * (distance / self._size - tally.level)
+        total = tally.distance + distance
+        return Tally(tally.accepted + 1, tally.gated, 0, None, stamp, total, mean, None, level)
 
     def rejected(
         self, tally: Tally, stamp: int, innovation: Array, away: Away | None = None
@@ -143,11 +154,6 @@ class InnovationGate:
 
     def _squared(self, change: Array, innovation: Array) -> float:
         return float(np.square(change / innovation[1, : self._size]).sum())
-
-
-def accepted(tally: Tally, stamp: int, distance: float, mean: Array) -> Tally:
-    """The tally after a sample that was used, of this distance, and the mean with it."""
-    return Tally(tally.accepted + 1, tally.gated, 0, None, stamp, tally.distance + distance, mean)
 
 
 def _or_one(std: Array) -> Array:

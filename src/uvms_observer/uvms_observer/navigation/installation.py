@@ -6,6 +6,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
+from uvms_observer.navigation.heading_reference import heading_bias
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import COMPASS_BIAS, CURRENT, INERTIAL_BIASES, SIZE
@@ -70,6 +71,8 @@ def _process_noise(vehicle: Vehicle, config: NavigationConfig) -> ProcessNoise:
     ]
     tilt = imu.roll_pitch_bias_deg
     biases[COMPASS_BIAS] = np.radians([tilt, tilt, imu.heading_bias_deg])
+    if not imu.orientation:
+        biases[COMPASS_BIAS] = [0.0, 0.0, heading_bias(vehicle)]
     biases[CURRENT:] = config.current_std_m_s
     decay = np.zeros(SIZE)
     decay[INERTIAL_BIASES] = decay[COMPASS_BIAS] = 1.0 / imu.bias_time_constant_s

@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 from uvms_core import registry
 from uvms_core.checks import ROUNDED, is_unit
 from uvms_core.errors import SignalError
-from uvms_core.sensors import sensor_types
+from uvms_core.sensors import BUILT_IN, mounted_sensors
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.measurements.base import Measurement
@@ -33,16 +33,17 @@ class Instruments:
     """
 
     def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
-        types = sensor_types(vehicle)
-        self.unused = frozenset(each.name for each in types if not each.navigation)
+        sensors = mounted_sensors(vehicle)
+        self.unused = frozenset(each.name for each in sensors if not each.navigation)
+        mounted = {each.type.name for each in sensors}
+        self.absent = tuple(kind.name for kind in BUILT_IN if kind.name not in mounted)
+        """Kinds of sensors that most vehicles have, and this one has not."""
+        used = [each for each in sensors if each.navigation]
         self.measurements: dict[str, Measurement] = {}
-        for name in (each.name for each in types if each.navigation):
-            make = registry.load(registry.MEASUREMENTS, name)
-            self.measurements[name] = make(vehicle, vehicle.sensors.mounted[name], config)
-        self.periods = {
-            name: 1.0 / getattr(vehicle.sensors.mounted[name], "rate_hz", 1.0)
-            for name in self.measurements
-        }
+        for each in used:
+            make = registry.load(registry.MEASUREMENTS, each.type.name)
+            self.measurements[each.name] = make(vehicle, each.section, config)
+        self.periods = {each.name: 1.0 / each.section.rate_hz for each in used}
         """Time between two samples of each sensor, s."""
         self._ranks = {name: rank for rank, name in enumerate(self.measurements)}
 
@@ -53,7 +54,7 @@ class Instruments:
             SignalError: the vehicle has no sensor of that name.
         """
         for name in groups:
-            if name not in self._ranks and name not in self.unused:
+            if name not in self._ranks and name not in self.unused and groups[name]:
                 choices = ", ".join(self._ranks)
                 raise SignalError(f"samples of {name!r}: the vehicle has {choices}")
         return in_order(

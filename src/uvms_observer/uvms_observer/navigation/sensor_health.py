@@ -30,6 +30,14 @@ def health_of(tally: Tally, silent_s: float, period_s: float) -> Health:
     return Health.SUSPECT if tally.row else Health.GOOD
 
 
+def joined(*troubles: Trouble | None) -> Trouble | None:
+    """Several as one, of the highest of their levels; None where there is none."""
+    found = [each for each in troubles if each is not None]
+    if not found:
+        return None
+    return Trouble(max(each.level for each in found), "; ".join(each.text for each in found))
+
+
 def trouble_of(health: Mapping[str, Health]) -> Trouble | None:
     """What there is to say of the sensors that are not used; None where all are."""
     excluded = [name for name, each in health.items() if each is Health.EXCLUDED]

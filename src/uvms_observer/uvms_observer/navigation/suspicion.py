@@ -127,10 +127,25 @@ def _tried_from(
     if other.time is None:  # there is nothing to doubt before the first sample of the IMU
         return None
     doubt(other)
-    again, other = replayed(other, [(step.readings, step.end) for step in steps[index:]])
+    again: list[Step] = []
+    missed = {name: MISSED * _count(name, steps[index:]) for name in names}
+    for step in steps[index:]:
+        done, other = replayed(other, [(step.readings, step.end)])
+        again += done
+        if any(_gated(name, begin, other) > most for name, most in missed.items()):
+            return None
     if not all(_explained(name, begin, other) for name in names) or _rejected(other):
         return None
     return [*steps[:index], *again], other
+
+
+def _count(name: str, steps: Sequence[Step]) -> int:
+    """Samples of a sensor."""
+    return sum(reading.name == name for step in steps for reading in step.readings)
+
+
+def _gated(name: str, before: Estimator, after: Estimator) -> int:
+    return after.tallies[name].gated - before.tallies[name].gated
 
 
 def _rejected(estimator: Estimator) -> list[str]:
@@ -141,6 +156,6 @@ def _rejected(estimator: Estimator) -> list[str]:
 def _explained(name: str, before: Estimator, after: Estimator) -> bool:
     """Whether the sensor's residuals are those of a filter that is right."""
     first, last = before.tallies[name], after.tallies[name]
-    taken, rejected = last.accepted - first.accepted, last.gated - first.gated
+    taken, rejected = last.accepted - first.accepted, _gated(name, before, after)
     limit = quantile(taken * after.size_of(name), LIKELY)
     return taken > 0 and rejected <= MISSED * taken and last.distance - first.distance <= limit

@@ -76,7 +76,7 @@ class Change:
         before = rest.plan
         rest.advance()
         if rest.plan is not None and rest.plan is not before:
-            planned = TimedPlan(self._from, rest.plan)
+            planned = TimedPlan(self._from, rest.plan, feasible=rest.plan.report.feasible)
             if acceptable(planned, in_hand, begin):
                 self._planned, self._last = planned, None
         if rest.over:

@@ -19,20 +19,19 @@ from uvms_planner.whole_path.newton import Iteration
 from uvms_planner.whole_path.path_problem import PathProblem, Posture
 from uvms_planner.whole_path.plan import PathPlan, plan_values
 from uvms_planner.whole_path.plan_report import FORGIVEN, PlanReport, report_of
-from uvms_planner.whole_path.sample import WRENCHES
+from uvms_planner.whole_path.sample import MANIPULABILITY, TURN, WRENCHES
 from uvms_planner.whole_path.sampled_bounds import sampled_bounds
 from uvms_planner.whole_path.solve import HIGHER, SPARE, posture_held, size_of
 from uvms_planner.whole_path.spline import DEGREE, Basis, basis_at, greville, spline_values
 
-PIECES_S = (0.25,) * 2 + (0.5,) * 5 + (1.0,) * 5 + (2.0,) * 4  # 16 s
+PIECES_S = (0.25,) * 2 + (0.5,) * 5 + (1.0,) * 5 + (2.0,) * 3 + (1.5, 0.5)  # 16 s
 SHORTEST_S = 2.0  # of a window that is cut off by the path's end
 SAMPLES = 2  # of each piece
 TIGHT = 0.98  # of sampled limits: there are fewer samples than of a whole path
 BARRIER = 1e-4
 FIRST_BARRIERS = (1e-2,) * 3 + (1e-3,) * 3 + (1e-4,) * 4  # of a window that has none before it
 PRICE = 1e3  # of a broken limit
-REPAIRS = 2  # times that limits are tightened where the window exceeds them between samples
-REPAIR_STEPS = 3
+REPAIR_STEPS = 4  # at most with tighter limits, where a window exceeds them between samples
 ENDS_TOGETHER_S = 1e-9  # ends of a window and of a step are the same, but for rounding
 
 
@@ -111,19 +110,30 @@ class PathWindow:
         if known is not None:
             guess = template.fit @ _led_over(known, then, begin, length, template.sites)
         barriers = FIRST_BARRIERS if last is None else (BARRIER,)
-        plan, price = self._iterated(discrete, guess, barriers, PRICE), PRICE
-        for _ in range(REPAIRS):
-            if template.keeps_limits(plan):
-                return TimedPlan(begin, plan, then, True)
-            discrete, price = discrete.tightened(plan.report.excess + SPARE), HIGHER * price
-            plan = self._iterated(discrete, plan.coefficients, (BARRIER,) * REPAIR_STEPS, price)
-        return TimedPlan(begin, plan, then)
+        plan = self._iterated(discrete, guess, barriers)
+        kept, excess = template.examined(plan)
+        if not kept:
+            plan, kept = self._repaired(template, plan, excess)
+        return TimedPlan(begin, plan, then, kept)
 
-    def _iterated(
-        self, discrete: Discrete, start: Array, barriers: tuple[float, ...], price: float
-    ) -> PathPlan:
+    def _repaired(
+        self, template: "_Template", plan: PathPlan, excess: Array
+    ) -> tuple[PathPlan, bool]:
+        """A window with its limits tightened by what it exceeds them, and whether it keeps them."""
+        tight = template.discrete.tightened(excess + SPARE)
+        size, kept = self._size or 1.0, False
+        point = Iteration(tight, plan.coefficients, size * HIGHER * PRICE)
+        for _ in range(REPAIR_STEPS):
+            point.step(size * BARRIER)
+            plan = PathPlan(tight.problem, tight.knots, point.coefficients, 1)
+            kept, _ = template.examined(plan)
+            if kept:
+                break
+        return plan, kept
+
+    def _iterated(self, discrete: Discrete, start: Array, barriers: tuple[float, ...]) -> PathPlan:
         size = self._size or 1.0
-        point = Iteration(discrete, start, size * price)
+        point = Iteration(discrete, start, size * PRICE)
         for barrier in barriers:
             point.step(size * barrier)
         return PathPlan(discrete.problem, discrete.knots, point.coefficients, len(barriers))
@@ -164,25 +174,34 @@ class _Template:
         basis = basis_at(discrete.knots, instants)
         return _Template(discrete, sampled_bounds(discrete.problem), sites, fit, instants, basis)
 
-    def keeps_limits(self, plan: PathPlan) -> bool:
-        """Whether a window certainly keeps all limits; where not, its report knows more."""
-        problem, limits, bounds = self.discrete.problem, self.discrete.problem.limits, self.bounds
+    def examined(self, plan: PathPlan) -> tuple[bool, Array]:
+        """Whether a window certainly keeps all limits (where not, its report knows more), and the
+        shares (v,) by which the sampled values exceed theirs, or negative.
+        """
+        problem, bounds = self.discrete.problem, self.bounds
         posture = spline_values(self.basis, plan.coefficients)
-        c = slice(VEHICLE - 1, None)
-        start = problem.start.value
-        low, high = np.minimum(limits.lower[c], start), np.maximum(limits.upper[c], start)
-        over = max(
-            float(np.max(posture[:, 0] - high)),
-            float(np.max(low - posture[:, 0])),
-            float(np.max(np.abs(posture[:, 1]) / limits.rate[c])) - 1,
-            float(np.max(np.abs(posture[:, 2]) / limits.acceleration[c])) - 1,
-        )
-        if over > FORGIVEN or problem.tool.oriented:
-            return False
         target = problem.target(self.instants)
-        values = plan_values(problem.model, problem.around, posture, target)[:, WRENCHES:]
-        excess = np.maximum(values - bounds.upper, bounds.lower - values)
-        return bool((excess <= FORGIVEN * bounds.scale).all())
+        values = plan_values(problem.model, problem.around, posture, target)
+        sampled = values[:, WRENCHES:]
+        beyond = np.maximum(sampled - bounds.upper, bounds.lower - sampled).max(axis=0)
+        excess = beyond / bounds.scale
+        over = max(float(excess.max()), _posture_excess(problem, posture))
+        if problem.tool.oriented:
+            turn = np.linalg.norm(values[:, TURN:MANIPULABILITY], axis=1).max()
+            over = max(over, float(turn) / problem.turn_tolerance - 1)
+        return over <= FORGIVEN, excess
+
+
+def _posture_excess(problem: PathProblem, posture: Array) -> float:
+    """The greatest share by which yaw and joints, rates and accelerations exceed their limits."""
+    limits, c, start = problem.limits, slice(VEHICLE - 1, None), problem.start.value
+    low, high = np.minimum(limits.lower[c], start), np.maximum(limits.upper[c], start)
+    return max(
+        float(np.max(posture[:, 0] - high)),
+        float(np.max(low - posture[:, 0])),
+        float(np.max(np.abs(posture[:, 1]) / limits.rate[c])) - 1,
+        float(np.max(np.abs(posture[:, 2]) / limits.acceleration[c])) - 1,
+    )
 
 
 def _led_over(
@@ -202,7 +221,7 @@ def acceptable(new: TimedPlan, in_hand: TimedPlan, since: float) -> bool:
 
     After a thruster has failed, say, there may be no plan that keeps all of them.
     """
-    if new.feasible or new.plan.report.feasible:
+    if new.feasible:
         return True
     times = new.plan.instants()
     times = times[new.begin + times >= since]

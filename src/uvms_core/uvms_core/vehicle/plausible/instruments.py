@@ -1,7 +1,6 @@
 """Sensors: rates and errors that no instrument has."""
 
 from collections.abc import Iterator
-from operator import attrgetter
 
 from uvms_core.vehicle.plausible.finding import Finding
 from uvms_core.vehicle.sensors import Sensors
@@ -77,7 +76,9 @@ def check_instruments(vehicle: Vehicle) -> Iterator[Finding]:
             yield Finding(f"sensors.{name}.latency_s", text)
     yield from _shares(sensors)
     for path, worst in WORST.items():
-        value = float(attrgetter(path)(sensors))
+        name, _, field = path.partition(".")
+        section = getattr(sensors, name)
+        value = 0.0 if section is None else float(getattr(section, field))
         if value > worst:
             text = f"{value:g} is more than {worst:g}: with so large an error it measures nothing"
             yield Finding(f"sensors.{path}", text)

@@ -5,7 +5,7 @@ from functools import cache
 from typing import Any, get_type_hints
 
 from uvms_core.errors import ConfigError
-from uvms_core.sensors import sensor_type
+from uvms_core.sensors import mounted_sensors
 from uvms_core.signals import JointStates, OnlyIf, Shape
 from uvms_core.topics import ENCODERS
 from uvms_core.vehicle import Vehicle
@@ -25,13 +25,14 @@ def quantities(vehicle: Vehicle, sensor: str) -> dict[str, int]:
 
     An attitude has three: its error is a rotation vector.
     """
-    rules = rules_of(signal_of(sensor))
+    rules = rules_of(signal_of(vehicle, sensor))
     return {name: _size(rule, vehicle) for name, rule in rules.items()}
 
 
-def signal_of(sensor: str) -> type:
+def signal_of(vehicle: Vehicle, sensor: str) -> type:
     """Class of a sensor's samples."""
-    return JointStates if sensor == ENCODERS else sensor_type(sensor).signal
+    kinds = {each.name: each.type.signal for each in mounted_sensors(vehicle)}
+    return JointStates if sensor == ENCODERS else kinds[sensor]
 
 
 def is_attitude(kind: type, name: str) -> bool:

@@ -228,7 +228,7 @@ class ScaleFault(_OfSize):
     def check(self, vehicle: Vehicle) -> None:
         """A quantity that has a scale."""
         super().check(vehicle)
-        if self.field and is_attitude(signal_of(self.sensor), self.field):
+        if self.field and is_attitude(signal_of(vehicle, self.sensor), self.field):
             raise ConfigError(f"field {self.field!r}: an attitude has no scale")
 
     @property

@@ -1,11 +1,12 @@
 """Doppler velocity log."""
 
 import math
+from dataclasses import replace
 
 import numpy as np
 
 from uvms_core.sensors import dvl
-from uvms_core.signals import Array, DvlSample
+from uvms_core.signals import BOTTOM_LOCK, WATER_LOCK, Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.rotations import quat_to_matrix
@@ -16,6 +17,8 @@ from uvms_dynamics.simulation.sensors.mounting import QUATERNION, SPEED, VELOCIT
 
 class DvlSensor(SensorModel):
     """Velocity over ground at the lever arm, its own axes: (1 + s) R^T (v + omega x r) + errors.
+
+    Or through the water, where the vehicle file says that it is locked to that.
 
     Without bottom lock there is no sample: too near to the seabed or too far from it, or tilted.
     """
@@ -30,6 +33,8 @@ class DvlSensor(SensorModel):
         self._mount = misalignment(seed, self.type.name, section.misalignment_deg)
         self._seabed = vehicle.environment.seabed_depth_m
         self._upright = math.cos(math.radians(section.max_tilt_deg or 180.0))
+        if section.lock == WATER_LOCK:
+            self._seabed = None  # it needs none
         self._can_lose = self._seabed is not None or section.max_tilt_deg is not None
         self._errors = Errors(
             seed,
@@ -49,7 +54,7 @@ class DvlSensor(SensorModel):
             rows = [row for row in rows if self._has_bottom_lock(trajectory.states[row])]
         if not rows:
             return ()
-        motion = trajectory.at_lever(rows, self._lever, 0.0)
+        motion = self._moving_against(trajectory).at_lever(rows, self._lever, 0.0)
         return tuple(
             self._read(trajectory.stamps[row], motion[k, SPEED]) for k, row in enumerate(rows)
         )
@@ -60,7 +65,13 @@ class DvlSensor(SensorModel):
             velocity = self._mount.T @ velocity
         measured = self._errors.completed(stamp, self._scale * velocity + noise)
         variance = self._dvl.noise_m_s**2 + (self._dvl.scale_error * measured) ** 2
-        return DvlSample(stamp, measured, np.diag(variance))
+        return DvlSample(stamp, measured, np.diag(variance), self._dvl.lock)
+
+    def _moving_against(self, trajectory: Trajectory) -> Trajectory:
+        """The motion over ground, or through the water, whose own motion is left out then."""
+        if self._dvl.lock == BOTTOM_LOCK:
+            return trajectory
+        return replace(trajectory, current=np.zeros(3), water=None)
 
     def _has_bottom_lock(self, state: Array) -> bool:
         down = quat_to_matrix(state[QUATERNION:VELOCITY])[2]

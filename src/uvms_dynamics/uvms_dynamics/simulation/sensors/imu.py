@@ -5,6 +5,7 @@ import math
 import numpy as np
 
 from uvms_core.sensors import imu
+from uvms_core.sensors.imu import LEVEL
 from uvms_core.signals import Array, ImuSample, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Imu
@@ -41,6 +42,7 @@ class ImuSensor(SensorModel):
         super().__init__(vehicle, section, period, seed)
         self._gravity = vehicle.environment.gravity_m_s2
         self._lever = np.array(section.position_m)
+        self._oriented = section.orientation
         self._noise = _errors(section, "noise")
         self._bias_std = _errors(section, "bias")
         self._bias = self._bias_std * self.rng.standard_normal(9)
@@ -74,7 +76,9 @@ class ImuSensor(SensorModel):
         turn, force = turn + error[3:6], force + error[6:]
         if self._errors.rounds:
             turned, turn, force = self._rounded(turned, turn, force)
-        return ImuSample(stamp, turned, turn, force, *self._covariances)
+        if not self._oriented:
+            turned = LEVEL.copy()
+        return ImuSample(stamp, turned, turn, force, *self._covariances, oriented=self._oriented)
 
     def _in_its_axes(self, quaternion: Array, motion: Array) -> tuple[Array, Array, Array]:
         """Attitude, turn rate and specific force about the unit's own axes, scaled as it does."""

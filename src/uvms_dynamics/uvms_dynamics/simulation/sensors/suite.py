@@ -5,7 +5,8 @@ from dataclasses import dataclass
 from typing import Any
 
 from uvms_core import checks, registry
-from uvms_core.sensors import INERTIAL, sensor_types
+from uvms_core.rng import generator
+from uvms_core.sensors import INERTIAL, MountedSensor, mounted_sensors
 from uvms_core.signals import (
     NOTHING_YET,
     Array,
@@ -52,17 +53,17 @@ class SensorFrame:
     @property
     def dvl(self) -> tuple[DvlSample, ...]:
         """Of the Doppler velocity log."""
-        return self.samples["dvl"]
+        return self.samples.get("dvl", ())
 
     @property
     def pressure(self) -> tuple[PressureSample, ...]:
         """Of the pressure sensor."""
-        return self.samples["pressure"]
+        return self.samples.get("pressure", ())
 
     @property
     def gps(self) -> tuple[GpsSample, ...]:
         """Of the satellite receiver."""
-        return self.samples["gps"]
+        return self.samples.get("gps", ())
 
 
 class SensorSuite:
@@ -81,11 +82,12 @@ class SensorSuite:
         self._models: dict[str, SensorModel] = {}
         self.deliveries: dict[str, Delivery] = {}
         """When the samples of each sensor come, and whether."""
-        for name, section in vehicle.sensors.mounted.items():
+        for sensor in mounted_sensors(vehicle):
+            name, section = sensor.name, sensor.section
             period = to_nanoseconds(1.0 / section.rate_hz)
             check(period, f"sensors.{name}.rate_hz")
-            make = registry.load(registry.SENSORS, name)
-            self._models[name] = make(vehicle, section, period, seed)
+            make = registry.load(registry.SENSORS, sensor.type.name)
+            self._models[name] = make(vehicle, section, period, _seed_of(sensor, seed))
             self.deliveries[name] = Delivery(name, section, seed)
         self._encoders = EncoderSensor(vehicle.sensors.encoders, seed)
         self._seed = seed
@@ -150,5 +152,12 @@ class SensorSuite:
 
 def in_order_of_publication(vehicle: Vehicle) -> tuple[tuple[str, Topic], ...]:
     """Name and topic of each sensor; the inertial one comes last, since it starts the next tick."""
-    types = sorted(sensor_types(vehicle), key=lambda sensor: sensor is INERTIAL)
-    return tuple((sensor.name, sensor.topic) for sensor in types)
+    order = sorted(mounted_sensors(vehicle), key=lambda sensor: sensor.type is INERTIAL)
+    return tuple((sensor.name, sensor.topic) for sensor in order)
+
+
+def _seed_of(sensor: MountedSensor, seed: int) -> int:
+    """Of a sensor's model, whose random numbers go by its kind: two of a kind err apart."""
+    if sensor.name == sensor.type.name:
+        return seed
+    return int(generator(seed, f"sensors/{sensor.name}").integers(2**31))

@@ -38,6 +38,15 @@ class Measurement(ABC):
         """Whether the sample says anything; a GPS under water does not."""
         return True
 
+    def heading(self, sample: Any, level: Array) -> tuple[float, float] | None:
+        """Heading (rad) and its variance, by which the filter can start; None: it says nothing.
+
+        Args:
+            sample: checked.
+            level: attitude (4,) of the vehicle, whose heading is zero where it is not known.
+        """
+        return None
+
     @abstractmethod
     def correct(self, state: NavigationState, sample: Any, rate: Array, gate: float) -> float:
         """Correct the state in place, unless the residual is beyond the gate.

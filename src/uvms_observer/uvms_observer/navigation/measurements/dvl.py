@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from uvms_core.signals import Array, DvlSample
+from uvms_core.signals import WATER_LOCK, Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
@@ -11,6 +11,7 @@ from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
 from uvms_observer.navigation.correction import correct, linearization_point
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     CURRENT,
@@ -42,17 +43,50 @@ class DvlVelocity(Measurement):
         self._variance = max(section.noise_m_s, config.noise_floor.velocity_m_s) ** 2
         self._rate_variance = rate_variance(vehicle)
         mounting = np.radians(max(section.misalignment_deg, config.noise_floor.misalignment_deg))
-        self.initial_variance = {
-            DVL_SCALE: float(np.square(section.scale_error)),
-            **dict.fromkeys(range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3), float(mounting**2)),
-        }
+        self._noise, self._scale = section.noise_m_s, section.scale_error
+        self._has_states = section is vehicle.sensors.dvl
+        if self._has_states:
+            self.initial_variance = {
+                DVL_SCALE: float(np.square(section.scale_error)),
+                **dict.fromkeys(range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3), float(mounting**2)),
+            }
+        self._as_white = as_white(float(np.hypot(section.scale_error, mounting)), section.rate_hz)
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
-        in_water = sample.lock == "water"
+        in_water = sample.lock == WATER_LOCK
         variance = self._variance + (WATER_NOISE_M_S**2 if in_water else 0.0)
+        variance += self._excess(sample)
+        if not self._has_states:
+            return self._correct_alone(state, sample, variance, rate, gate)
         turning = self.lever, rate, self._rate_variance
         return correct_velocity(tuple(state), sample.velocity, variance, *turning, in_water, gate)
+
+    def _excess(self, sample: DvlSample) -> float:
+        """Variance that the message states beyond what the vehicle file knows of; the largest."""
+        stated = sample.covariance.diagonal()
+        if not stated.any():
+            return 0.0
+        known = self._noise**2 + (self._scale * sample.velocity) ** 2
+        return max(float((stated - known).max()), 0.0)
+
+    def _correct_alone(
+        self, state: NavigationState, sample: DvlSample, variance: float, rate: Array, gate: float
+    ) -> float:
+        """As `correct_velocity`, of a further DVL: scale and misalignment in the state are not
+        its own, and its own count as noise that lasts.
+        """
+        measured, own = sample.velocity, state.further.copy()
+        own[DVL_SCALE - FURTHER] = 0.0
+        own[DVL_MISALIGNMENT - FURTHER : DVL_MISALIGNMENT - FURTHER + 3] = 0.0
+        right = state._replace(further=own)
+        expected, H = velocity(right, self.lever, rate, sample.lock == WATER_LOCK)
+        H[:, DVL_SCALE] = 0.0
+        H[:, DVL_MISALIGNMENT : DVL_MISALIGNMENT + 3] = 0.0
+        arm = skew(self.lever)
+        variance += self._as_white * float(measured.dot(measured))
+        N = variance * np.eye(3) + self._rate_variance * (arm @ arm.T)
+        return correct(state, H, measured - expected, N, gate)
 
 
 @exact_inner

@@ -7,6 +7,7 @@ from uvms_core.signals import Array, GpsSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Gps
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.noise import with_stated
 from uvms_observer.navigation.measurements.position import correct_position
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import NavigationState
@@ -23,6 +24,8 @@ class GpsPosition(Measurement):
         horizontal = max(section.horizontal_noise_m, floor)
         vertical = max(section.vertical_noise_m, floor)
         self._variance = np.array([horizontal, horizontal, vertical]) ** 2
+        noise = section.horizontal_noise_m, section.horizontal_noise_m, section.vertical_noise_m
+        self._known: list[float] = np.square(noise).tolist()
         self._datum = (sea.datum_latitude_deg, sea.datum_longitude_deg)
 
     def usable(self, sample: GpsSample) -> bool:
@@ -33,4 +36,5 @@ class GpsPosition(Measurement):
         """As `Measurement.correct`."""
         place = (sample.latitude_deg, sample.longitude_deg, sample.altitude)
         antenna = geodetic_to_ned(*place, *self._datum)
-        return correct_position(state, antenna, self._variance, self.lever, gate)
+        variance = with_stated(self._variance, sample.covariance, self._known)
+        return correct_position(state, antenna, variance, self.lever, gate)

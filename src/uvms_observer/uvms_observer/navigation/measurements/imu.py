@@ -1,11 +1,16 @@
-"""The gyrocompass: its attitude; the inertial readings carry the state (`propagation.py`)."""
+"""The gyrocompass: its attitude; the inertial readings carry the state (`propagation.py`).
+
+Without a gyrocompass gravity tells roll and pitch: the specific force is R^T (a - g), where the
+vehicle's own acceleration a is small, and averages out over some seconds.
+"""
 
 from typing import Any
 
 import numpy as np
 
-from uvms_core.signals import Array, ImuSample
+from uvms_core.signals import Array, ImuSample, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Imu
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
@@ -13,27 +18,61 @@ from uvms_dynamics.kernels.rotations import (
     quat_to_matrix,
     quat_to_rotation_vector,
     rotation_vector_to_quat,
+    skew,
 )
 from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import attitude_variance
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.noise import with_stated
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import SIZE, Fields, NavigationState
+from uvms_observer.navigation.unknown_motion import ACCELERATION_M_S2
+
+EVERY = to_nanoseconds(0.1)
+"""Between two uses of gravity, ns."""
+LASTS_S = 2.0
+"""How long an acceleration of the vehicle lasts, s: so long its samples say the same."""
 
 
 class Gyrocompass(Measurement):
-    """R_m = R Exp(b_c + n), with the compass bias b_c in the state."""
+    """R_m = R Exp(b_c + n), with the compass bias b_c in the state; else f = -R^T g + b_a + n."""
 
     size = 3
 
     def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
         super().__init__(vehicle, section, config)
         self.variance = attitude_variance(vehicle, config)
+        noise, bias = np.radians(_noise_deg(section)), np.radians(_bias_deg(section))
+        self._known: list[float] = (noise**2 + bias**2).tolist()
+        self._gravity = vehicle.environment.gravity_m_s2
+        self._period = to_nanoseconds(1.0 / section.rate_hz)
+        self._force_variance = (
+            ACCELERATION_M_S2**2 * LASTS_S / to_seconds(EVERY) + section.accelerometer_noise_m_s2**2
+        )
+
+    def usable(self, sample: ImuSample) -> bool:
+        """Whether there is an attitude, or it is time for gravity."""
+        return sample.oriented or sample.stamp % EVERY < self._period
+
+    def variance_of(self, sample: ImuSample) -> Array:
+        """Of the noise of an attitude (3,) rad^2, about the body axes."""
+        return with_stated(self.variance, sample.orientation_covariance, self._known)
 
     def correct(self, state: NavigationState, sample: ImuSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
-        return correct_attitude(tuple(state), sample.quaternion, self.variance, gate)
+        if not sample.oriented:
+            force, variance = sample.linear_acceleration, self._force_variance
+            return correct_gravity(tuple(state), force, self._gravity, variance, gate)
+        return correct_attitude(tuple(state), sample.quaternion, self.variance_of(sample), gate)
+
+
+def _noise_deg(imu: Imu) -> list[float]:
+    return [imu.roll_pitch_noise_deg, imu.roll_pitch_noise_deg, imu.heading_noise_deg]
+
+
+def _bias_deg(imu: Imu) -> list[float]:
+    return [imu.roll_pitch_bias_deg, imu.roll_pitch_bias_deg, imu.heading_bias_deg]
 
 
 @exact_inner
@@ -61,3 +100,33 @@ def correct_attitude(fields: Fields, measured: Array, variance: Array, gate: flo
         for k in range(3):
             scaled[i, k] = R[i, k] * variance[k]
     return correct(state, H, residual, scaled @ transposed(R), gate)
+
+
+@exact_inner
+def specific_force(state: NavigationState, gravity: float) -> tuple[Array, Array]:
+    """Specific force (3,) m/s^2 of a vehicle that does not accelerate, body axes, and H."""
+    R = quat_to_matrix(state.quaternion)
+    up = np.zeros(3)
+    up[2] = -gravity
+    turned, reading = R.T @ skew(up), R.T @ up
+    H = np.zeros((3, SIZE))
+    for i in range(3):
+        H[i, 12 + i] = 1.0
+        for k in range(3):
+            H[i, 6 + k] = turned[i, k]
+        reading[i] += state.accelerometer_bias[i]
+    return reading, H
+
+
+@exact_kernel
+def correct_gravity(
+    fields: Fields, measured: Array, gravity: float, variance: float, gate: float
+) -> float:
+    """Specific force (3,) m/s^2; its variance is that of the vehicle's acceleration as well."""
+    state = NavigationState(*fields)
+    residual, H = specific_force(state, gravity)
+    N = np.zeros((3, 3))
+    for i in range(3):
+        residual[i] = measured[i] - residual[i]
+        N[i, i] = variance
+    return correct(state, H, residual, N, gate)

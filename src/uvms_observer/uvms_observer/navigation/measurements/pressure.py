@@ -9,6 +9,7 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import DEPTH_BIAS, FURTHER, SIZE, Fields, NavigationState
 
@@ -24,14 +25,21 @@ class PressureDepth(Measurement):
         self._surface = sea.atmospheric_pressure_pa
         self._gradient = sea.water_density_kg_m3 * sea.gravity_m_s2
         self._variance = max(section.noise_pa / self._gradient, config.noise_floor.depth_m) ** 2
-        self.initial_variance = {DEPTH_BIAS: float(np.square(section.bias_pa / self._gradient))}
+        self._known = section.noise_pa**2 + section.bias_pa**2
+        self._has_bias_state = section is vehicle.sensors.pressure
+        if self._has_bias_state:
+            self.initial_variance = {DEPTH_BIAS: float(np.square(section.bias_pa / self._gradient))}
+        else:
+            self._variance += as_white(section.bias_pa / self._gradient, section.rate_hz)
 
     def correct(
         self, state: NavigationState, sample: PressureSample, rate: Array, gate: float
     ) -> float:
         """As `Measurement.correct`."""
         measured = (sample.pressure - self._surface) / self._gradient
-        return correct_depth(tuple(state), measured, self._variance, self.lever, gate)
+        excess = max(sample.variance - self._known, 0.0) / self._gradient**2
+        take = correct_depth if self._has_bias_state else correct_level
+        return take(tuple(state), measured, self._variance + excess, self.lever, gate)
 
 
 @exact_inner
@@ -56,6 +64,20 @@ def correct_depth(
     state = NavigationState(*fields)
     residual, H = depth(state, lever)
     residual[0] = measured - residual[0]
+    N = np.empty((1, 1))
+    N[0, 0] = variance
+    return correct(state, H, residual, N, gate)
+
+
+@exact_kernel
+def correct_level(
+    fields: Fields, measured: float, variance: float, lever: Array, gate: float
+) -> float:
+    """Another gauge's depth in m: the bias of the state is not its own."""
+    state = NavigationState(*fields)
+    residual, H = depth(state, lever)
+    residual[0] = measured - (residual[0] - state.further[DEPTH_BIAS - FURTHER])
+    H[0, DEPTH_BIAS] = 0.0
     N = np.empty((1, 1))
     N[0, 0] = variance
     return correct(state, H, residual, N, gate)

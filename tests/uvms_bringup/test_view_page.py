@@ -1,0 +1,156 @@
+"""The page of a run in a headless browser, the shared file, pictures and movies."""
+
+import threading
+
+import numpy as np
+import pytest
+from browser import browser_tab
+from PIL import Image
+from viewed import short_run
+
+from uvms_bringup.cli import main
+from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.export import export, frame_times
+from uvms_bringup.viewer.log_source import LogSource
+from uvms_bringup.viewer.movie import write_movie
+from uvms_bringup.viewer.page import LogPage
+from uvms_bringup.viewer.picture import picture
+from uvms_bringup.viewer.scene_model import SceneModel
+
+HULL = np.array([0.96, 0.74, 0.16])
+MANY = 300
+"""Pixels that a vehicle in view has at the least."""
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory):
+    return short_run(tmp_path_factory.mktemp("view") / "run")
+
+
+@pytest.fixture(scope="module")
+def source(run):
+    return LogSource(run)
+
+
+@pytest.fixture
+def tab(tmp_path):
+    with browser_tab(tmp_path / "profile") as found:
+        yield found
+
+
+def yellow(image):
+    """Where the picture shows the hull: much more red than blue, and green between."""
+    red, green, blue = (image[..., n].astype(int) for n in range(3))
+    return (red - blue > 60) & (green - blue > 30) & (red >= green)
+
+
+def served(page):
+    """The page in a thread; the event ends it."""
+    ended = threading.Event()
+    thread = threading.Thread(target=page.serve, args=(ended.is_set,))
+    thread.start()
+    return ended, thread
+
+
+def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab):
+    page = LogPage(source, port=0)
+    ended, thread = served(page)
+    try:
+        tab.open(page.address)
+        tab.wait_for_text("UVMS: manipulation")
+        (first,) = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
+        before = page.drawing.position_of("estimated/link_1").copy()
+        page.player.jump(7.5)
+        tab.wait_for_text("7.50 s of 8 s")
+        tab.wait(lambda: _scene_changed(first, tab.picture()), "a change in the scene")
+        assert np.linalg.norm(page.drawing.position_of("estimated/link_1") - before) > 1e-4
+        expected = source.moment(7.5).estimated.position
+        assert np.abs(page.drawing.position_of("estimated") - expected).max() < 1e-6
+        tab.press("Play")
+        tab.wait_for_text("8.00 s of 8 s")
+        assert tab.complaints == []
+    finally:
+        ended.set()
+        thread.join()
+        page.close()
+
+
+def _scene_changed(first, now):
+    """Whether anything has changed around the vehicle, outside the panels."""
+    part = np.abs(now.astype(int) - first)[:280, 330:930]
+    return (part.max(axis=2) > 40).sum() > 30
+
+
+def _settled(tab):
+    """The second of two pictures in a row with the same vehicle, in a tuple; else nothing."""
+    one, other = tab.picture(), tab.picture()
+    if yellow(one).sum() > MANY and abs(int(yellow(one).sum()) - int(yellow(other).sum())) < 50:
+        return (other.astype(int),)
+    return ()
+
+
+def test_the_shared_file_opens_without_server_and_network(source, tab, tmp_path):
+    file = export(source, tmp_path / "run.html", frames=30)
+    assert file.stat().st_size < 3e6
+    assert "<script src=" not in file.read_text(encoding="utf-8")[:2000]
+    tab.offline()
+    tab.open(file.as_uri())
+    tab.wait(lambda: yellow(tab.picture()).sum() > MANY, "a vehicle in the picture")
+    assert tab.complaints == []
+
+
+def test_a_run_of_fifteen_minutes_has_no_more_frames_than_asked():
+    times = frame_times(0.0, 902.0, 1500)
+    assert (len(times), times[0], times[-1]) == (1500, 0.0, 902.0)
+    assert np.allclose(np.diff(frame_times(0.0, 1.0, 1500)), 0.05)
+
+
+def test_a_picture_shows_the_vehicle_with_port_and_starboard(source):
+    model = SceneModel(source.setting)
+    image = np.asarray(picture(model, source.moment(5.0), "top", "run", (320, 180)))
+    assert yellow(image).sum() > MANY
+    red, green, blue = (image[..., n].astype(int) for n in range(3))
+    port = np.argwhere((red > 150) & (green < 60) & (blue < 60))
+    starboard = np.argwhere((green > 100) & (red < 70) & (blue < 90))
+    assert len(port)
+    assert len(starboard)
+    bow = np.argwhere(yellow(image))
+    # from above, with the bow up in the picture, port is left and starboard right
+    assert port[:, 1].mean() < bow[:, 1].mean() < starboard[:, 1].mean()
+
+
+def test_the_command_writes_picture_and_movies(run, source, tmp_path, capsys):
+    still = tmp_path / "at.png"
+    assert main(["view", str(run), "--picture", str(still), "--at", "4"]) == 0
+    assert Image.open(still).size == (1280, 720)
+    assert str(still) in capsys.readouterr().out
+    gif = write_movie(source, tmp_path / "run.gif", "wide", (0.0, 1.0), speed=5.0)
+    with Image.open(gif) as movie:
+        assert movie.n_frames == 2
+    mp4 = write_movie(source, tmp_path / "run.mp4", "tool", (0.0, 0.2), speed=2.5)
+    assert mp4.read_bytes()[4:8] == b"ftyp"
+
+
+@pytest.mark.parametrize(
+    ("words", "why"),
+    [
+        ([], "name a log, or --live"),
+        (["{run}", "--live"], "one of the two"),
+        (["{run}", "--movie", "{folder}/a.avi"], "ends in one of .gif, .mp4"),
+        (["{run}", "--picture", "{folder}/no/a.png"], "cannot be written"),
+        (["{run}", "--export", "{folder}/no/a.html"], "cannot be written"),
+        (["{run}", "--picture", "{folder}/a.png", "--at", "99"], "from 0 to 8 s"),
+        (["{folder}/nothing.mcap"], "No such file"),
+    ],
+)
+def test_what_cannot_be_is_refused_in_one_line(run, tmp_path, capsys, words, why):
+    words = [word.format(run=run, folder=tmp_path) for word in words]
+    assert main(["view", *words]) == 2
+    complaint = capsys.readouterr().err
+    assert why in complaint
+    assert complaint.count("\n") == 1
+
+
+def test_an_unknown_time_span_of_a_movie_is_refused(source, tmp_path):
+    with pytest.raises(ViewError, match="from 0 to 8 s"):
+        write_movie(source, tmp_path / "a.gif", "wide", (2.0, 1.0))
