@@ -1,8 +1,9 @@
 """Print the navigation filter's table of faults, in Markdown.
 
-    .venv/bin/python benchmarks/navigation_table.py [--seeds N]
+    .venv/bin/python benchmarks/navigation_table.py [--seeds N] [--survey]
 
-For each fault and vehicle, over the seeds and two motions: the greatest error of the position, the
+For each fault and vehicle, over the seeds (and two motions with --survey): the greatest error of
+the position, the
 share of the ticks inside 3 sigma, and the greatest jump of the output in sigma.
 """
 
@@ -16,11 +17,13 @@ from uvms_core.vehicle import load_vehicle
 def main() -> None:
     """One table with both vehicles."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--seeds", type=int, default=3)
-    seeds = parser.parse_args().seeds
+    parser.add_argument("--seeds", type=int, default=1)
+    parser.add_argument("--survey", action="store_true", help="a second motion, too")
+    options = parser.parse_args()
+    motions = (None, "survey") if options.survey else (None,)
     print("| fault | " + " | ".join(f"{name}: error, inside, jump" for name in VEHICLES) + " |")
     print("|---" * (1 + len(VEHICLES)) + "|")
-    tables = [fault_rows(load_vehicle(name), seeds, (None, "survey")) for name in VEHICLES]
+    tables = [fault_rows(load_vehicle(name), options.seeds, motions) for name in VEHICLES]
     for rows in zip(*tables, strict=True):
         cells = [f"{row.error:.2f} m, {100.0 * row.inside:.1f} %, {row.jump:.1f}" for row in rows]
         print(f"| {rows[0].name} | " + " | ".join(cells) + " |", flush=True)

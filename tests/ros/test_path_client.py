@@ -1,27 +1,19 @@
 """The example client on the whole graph: a circle in either frame, its feedback, and cancelling."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from example_clients import imported
 from in_process import spin_until
 from led_graph import running
 from test_actions import path_from_start
 
 from uvms_core.signals import to_nanoseconds
 
-FOLDER = Path(__file__).resolve().parents[2] / "examples/path_client"
-
 
 @pytest.fixture
 def example(monkeypatch):
-    """The module of the example, as it stands there."""
-    monkeypatch.syspath_prepend(FOLDER)
-    import path_client
-
-    yield path_client
-    sys.modules.pop("path_client")
+    """The module of the example."""
+    yield from imported(monkeypatch, "path_client")
 
 
 def followed(example, folder, frame, duration_s=120.0):

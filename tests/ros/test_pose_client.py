@@ -1,10 +1,8 @@
 """The example client for poses on the whole graph: either frame, cancelling, and pre-emption."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from example_clients import imported
 from in_process import spin_until
 from led_graph import running
 from test_actions import path_from_start
@@ -12,17 +10,11 @@ from test_actions import path_from_start
 from uvms_bringup.scenario import load_scenario
 from uvms_core.signals import JointGoal, to_nanoseconds
 
-FOLDER = Path(__file__).resolve().parents[2] / "examples/pose_client"
-
 
 @pytest.fixture
 def example(monkeypatch):
-    """The module of the example, as it stands there."""
-    monkeypatch.syspath_prepend(FOLDER)
-    import pose_client
-
-    yield pose_client
-    sys.modules.pop("pose_client")
+    """The module of the example."""
+    yield from imported(monkeypatch, "pose_client")
 
 
 @pytest.mark.parametrize("frame", ["map", "map_ned"])

@@ -54,12 +54,12 @@ def test_a_goal_is_planned_by_hand_shown_sent_and_followed(tmp_path):
             assert graph.goal_state == "no goal sent"  # it is shown before it is sent
             page.send()
             spin_until(spinner, lambda: graph.goal_state == "under way")
-            spin_until(spinner, lambda: graph.goal_state.startswith("done"))
+            spin_until(spinner, lambda: page.step() or graph.goal_state.startswith("done"))
             page.step()
             moment = graph.moment()
             true = world_pose("true/tool", page.model.all_places(moment))[0]
             assert np.linalg.norm(true - end) < 0.05
-            assert len(moment.trail) > 5
+            assert len(moment.trail) > 2
 
             graph.lead(start)
             spin_until(spinner, lambda: _near(graph.moment().plan, start))

@@ -24,7 +24,14 @@ NAMES = ("chromium", "chromium-browser", "google-chrome", "google-chrome-stable"
 OWN = Path(sys.prefix) / "browser" / "chromium"
 """Where the set-up of the tests puts one."""
 SOFTWARE = ("--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader")
-ARGUMENTS = ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--mute-audio", *SOFTWARE)
+ARGUMENTS = (
+    "--headless=new",
+    "--no-sandbox",
+    "--hide-scrollbars",
+    "--mute-audio",
+    "--lang=en-US",
+    *SOFTWARE,
+)
 HOW = (
     "the tests of the page need a Chromium: install one (`sudo apt install chromium`), name one in"
     " UVMS_BROWSER, or install npm and run `make setup`, which fetches one from the npm registry"
@@ -131,7 +138,7 @@ def browser_tab(folder, size=(1280, 720)):
     port = Path(folder) / "DevToolsActivePort"
     command = [find(), *ARGUMENTS, f"--window-size={size[0]},{size[1]}",
                f"--user-data-dir={folder}", "--remote-debugging-port=0", "about:blank"]  # fmt: skip
-    variables = dict(os.environ)
+    variables = {**os.environ, "LANG": "en_US.UTF-8", "LC_ALL": "", "LANGUAGE": "en_US"}
     if command[0] == str(OWN):
         variables["LD_LIBRARY_PATH"] = str(OWN.parent / "lib")
     with subprocess.Popen(

@@ -76,7 +76,7 @@ def test_a_filter_whose_sensors_are_noisier_than_stated_says_so():
     assert "residuals are larger than stated noise explains" in navigation.trouble().text
     inside = navigation.state.covariance
     scale = odometry.pose_covariance[3, 3] / inside[6, 6]
-    assert 2.0 < scale < 5.0  # twice the noise is four times the variance
+    assert 1.5 < scale < 3.0  # a level of four, of which two are left alone
 
 
 def test_where_two_sensors_contradict_the_estimate_it_is_begun_anew_and_counted():

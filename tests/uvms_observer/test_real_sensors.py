@@ -1,6 +1,6 @@
 """The filter on vehicles with other sensors than the reference vehicle's, each by its physics."""
 
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import navigation_reference as numpy_reference
 import numpy as np
@@ -15,6 +15,7 @@ from uvms_core.sensors.heading import HeadingSample
 from uvms_core.sensors.magnetometer import MICROTESLA, MagneticSample
 from uvms_core.signals import DvlSample, ImuSample, PressureSample, to_nanoseconds
 from uvms_core.vehicle import load_vehicle
+from uvms_dynamics.simulation.sensors import SensorSuite, Trajectory
 from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation import NavigationConfig, NavigationFilter
 from uvms_observer.navigation.measurements import course, imu, noise
@@ -261,3 +262,34 @@ def test_a_sample_that_says_that_it_is_poor_moves_less():
     pressure = PressureDepth(vehicle, vehicle.sensors.pressure, config)
     stated = [moved(pressure, PressureSample(0, 2e5, v), slice(2, 3)) for v in (0.0, 1e12)]
     assert stated[1] < 0.5 * stated[0]
+
+
+def simulated(vehicle, seconds=2.0):
+    """Samples of a vehicle's simulated sensors, level and at rest, its antenna in the air."""
+    state, count = np.zeros(13), round(100 * seconds) + 1
+    state[2], state[6] = 0.1, 1.0
+    stamps = tuple(range(0, count * 10_000_000, 10_000_000))
+    trajectory = Trajectory(stamps, np.tile(state, (count, 1)), np.zeros((count, 13)), np.zeros(3))
+    suite = SensorSuite(vehicle, 3, lambda period, name: None)
+    return stamps[-1], suite.sample(trajectory, *np.zeros((3, vehicle.n_joints))).samples
+
+
+@pytest.mark.parametrize("name", ["reference_auv", "bluerov2_alpha5"])
+def test_what_the_simulation_states_is_what_the_vehicle_file_knows(name):
+    """So its covariances change nothing, to the last bit."""
+    vehicle = load_vehicle(name)
+    stamp, samples = simulated(vehicle)
+    silent = {each: [without_covariance(one) for one in samples[each]] for each in samples}
+    found = [
+        NavigationFilter(vehicle, NavigationConfig()).step_screened(stamp, each)[0]
+        for each in (samples, silent)
+    ]
+    assert all(samples.values())
+    for field in ("position", "quaternion", "nu", "pose_covariance", "twist_covariance"):
+        np.testing.assert_array_equal(*(getattr(each, field) for each in found))
+
+
+def without_covariance(sample):
+    names = [field.name for field in fields(sample)]
+    stated = {name: NONE for name in names if "covariance" in name}
+    return replace(sample, **stated, **({"variance": 0.0} if "variance" in names else {}))

@@ -142,8 +142,11 @@ class VehicleBody:
             yield self._node(f"light_{name}", "sphere", (place, np.eye(3)), size, colour)
 
     def _beams(self) -> Iterator[Node]:
-        """The four beams of the Doppler log."""
-        dvl = np.array(self._vehicle.sensors.dvl.position_m)
+        """The four beams of the Doppler log, where there is one."""
+        section = self._vehicle.sensors.dvl
+        if section is None:
+            return
+        dvl = np.array(section.position_m)
         length = BEAM_LENGTH * 2.0 * self.size[1][0]
         tilt = np.radians(BEAM_ANGLE_DEG)
         for number, azimuth in enumerate(np.radians([45.0, 135.0, 225.0, 315.0])):

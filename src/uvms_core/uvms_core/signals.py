@@ -8,7 +8,7 @@ body frame, about its origin.
 
 The annotations of the fields are the rules by which `uvms_core.checks` checks a signal; plain
 floats must be finite, and plain arrays are checked only on the way from a message (the covariances
-of samples, which no part of the system reads: the vehicle file has the sensors' noise).
+of samples, which only add to the noise that the vehicle file states; zeros where none is given).
 """
 
 from dataclasses import dataclass, field, replace

@@ -2,7 +2,7 @@
 
 They are wide: nothing that a vehicle can do is refused, be it capsizing, falling with ten times its
 mass, drifting in a strong current or limp. What is refused cannot be a measurement or a command of
-this vehicle at all. Covariances of samples have none: no part of the system reads them.
+this vehicle at all. Covariances of samples have none: they may only let a sample count for less.
 """
 
 from collections.abc import Callable

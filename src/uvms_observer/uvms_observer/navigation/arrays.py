@@ -7,7 +7,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner
-from uvms_observer.navigation.state import NavigationState
+from uvms_observer.navigation.state import SIZE, NavigationState
 
 
 @exact_inner
@@ -34,3 +34,31 @@ def subtract_from(measured: Array, expected: Array) -> None:
     """The expected reading (3,) becomes the residual."""
     for i in range(3):
         expected[i] = measured[i] - expected[i]
+
+
+@exact_inner
+def product(A: Array, B: Array) -> Array:
+    """A B, (m, k) times (k, n), for an A with many zeros: row by row, as vector instructions."""
+    out = np.zeros((A.shape[0], B.shape[1]))
+    for i in range(A.shape[0]):
+        for k in range(A.shape[1]):
+            factor = A[i, k]
+            if factor != 0.0:
+                for j in range(B.shape[1]):
+                    out[i, j] += factor * B[k, j]
+    return out
+
+
+@exact_inner
+def covariance_of(HP: Array, H: Array, N: Array) -> Array:
+    """S = H P H^T + N, (m, m), of H P (m, SIZE)."""
+    m = N.shape[0]
+    S = np.empty((m, m))
+    for i in range(m):
+        for j in range(m):
+            total = N[i, j]
+            for k in range(SIZE):
+                if H[j, k] != 0.0:
+                    total += HP[i, k] * H[j, k]
+            S[i, j] = total
+    return S

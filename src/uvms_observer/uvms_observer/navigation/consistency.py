@@ -22,6 +22,9 @@ WINDOW_S = 10.0
 """Time constant of the running mean, s."""
 CHANCE = 5.0
 """Standard deviations of the level about 1 that are still chance."""
+LEAST = 2.0
+"""Level that is left alone in any case: errors that are constant over the window, as a mounting's,
+make levels of 1.5 in a right filter, too."""
 TOGETHER = 2
 """Sensors that are excluded at the same time where it is the estimate that is wrong: two that lie
 at once are rarer."""
@@ -37,7 +40,7 @@ def keep_of(period_s: float) -> float:
 def bound(size: int, keep: float) -> float:
     """Largest level that is chance: the mean of so many chi-square numbers, weighted."""
     count = (1.0 + keep) / (1.0 - keep)
-    return 1.0 + CHANCE * float(np.sqrt(2.0 / (size * count)))
+    return max(LEAST, 1.0 + CHANCE * float(np.sqrt(2.0 / (size * count))))
 
 
 def trouble_of(beyond: Mapping[str, float], resets: int) -> Trouble | None:

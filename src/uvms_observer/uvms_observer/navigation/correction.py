@@ -4,8 +4,7 @@
     e = K r,  P <- (I - K H) P (I - K H)^T + K N K^T,  state <- state (+) e.
 
 The Joseph form holds for any gain and keeps P positive semidefinite under rounding. The tests
-compare it with the same in plain numpy. Products are written row by row: a derivative has few
-entries, and numba makes vector instructions of such loops.
+compare it with the same in plain numpy.
 """
 
 import numpy as np
@@ -13,6 +12,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
+from uvms_observer.navigation.arrays import covariance_of, product
 from uvms_observer.navigation.state import (
     DVL_MISALIGNMENT,
     FURTHER,
@@ -49,49 +49,21 @@ def correct(
         d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed but
         the innovation that the state keeps.
     """
-    HP = _rows(H, state.covariance)
-    S = _covariance_of(HP, H, N)
+    HP = product(H, state.covariance)
+    S = covariance_of(HP, H, N)
     _keep_innovation(state.innovation, residual, N, S)
     weights = inverse(S)
     distance = _squared(residual, weights)
     if not distance <= gate:
         return distance
     if is_fix:
-        gain = _rows(weights, HP)
+        gain = product(weights, HP)
     else:
         known = _of_known_mounting(state.covariance, HP)
-        gain = _rows(inverse(_covariance_of(known, H, N)), known)
+        gain = product(inverse(covariance_of(known, H, N)), known)
     _correct_covariance(state.covariance, gain, H, HP, N)
     _add_error(state, _weighted(residual, gain))
     return distance
-
-
-@exact_inner
-def _rows(A: Array, B: Array) -> Array:
-    """A B, (m, k) times (k, n), for an A with many zeros."""
-    out = np.zeros((A.shape[0], B.shape[1]))
-    for i in range(A.shape[0]):
-        for k in range(A.shape[1]):
-            factor = A[i, k]
-            if factor != 0.0:
-                for j in range(B.shape[1]):
-                    out[i, j] += factor * B[k, j]
-    return out
-
-
-@exact_inner
-def _covariance_of(HP: Array, H: Array, N: Array) -> Array:
-    """S = H P H^T + N, (m, m), of H P."""
-    m = N.shape[0]
-    S = np.empty((m, m))
-    for i in range(m):
-        for j in range(m):
-            total = N[i, j]
-            for k in range(SIZE):
-                if H[j, k] != 0.0:
-                    total += HP[i, k] * H[j, k]
-            S[i, j] = total
-    return S
 
 
 @exact_inner
@@ -180,8 +152,8 @@ def linearization_point(
 
     Jazwinski, *Stochastic Processes and Filtering Theory* (1970), sec. 8.3.
     """
-    HP = _rows(H, state.covariance)
-    e = _weighted(residual, _rows(inverse(_covariance_of(HP, H, N)), HP))
+    HP = product(H, state.covariance)
+    e = _weighted(residual, product(inverse(covariance_of(HP, H, N)), HP))
     point = NavigationState(
         state.position.copy(),
         state.velocity.copy(),

@@ -10,7 +10,7 @@ import numpy as np
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
-from uvms_observer.navigation.arrays import body_rate, transposed
+from uvms_observer.navigation.arrays import body_rate, covariance_of, product, transposed
 from uvms_observer.navigation.state import SIZE, Fields, NavigationState
 
 
@@ -25,7 +25,7 @@ def _pose(state: NavigationState, lever: Array) -> tuple[Array, Array]:
         for k in range(3):
             J[i, 6 + k] = -arm[i, k]
         position[i] += state.position[i]
-    covariance = (J @ state.covariance) @ transposed(J)
+    covariance = covariance_of(product(J, state.covariance), J, np.zeros((6, 6)))
     _symmetrize(covariance)
     return position, covariance
 
@@ -52,10 +52,11 @@ def _twist(
             J[i, 3 + k] = R[k, i]
             J[i, 6 + k] = turned[i, k]
             G[i, k], J[i, 9 + k] = -arm[i, k], arm[i, k]
-    covariance, noise = (J @ state.covariance) @ transposed(J), G @ transposed(G)
+    noise = product(G, transposed(G))
     for i in range(6):
         for k in range(6):
-            covariance[i, k] += rate_variance * noise[i, k]
+            noise[i, k] *= rate_variance
+    covariance = covariance_of(product(J, state.covariance), J, noise)
     _symmetrize(covariance)
     return nu, covariance
 

@@ -19,7 +19,7 @@ from uvms_planner.whole_path.tool_turn import WANTED_ROWS
 
 INSTANTS = 12  # of each piece at which a plan is examined
 CLOSELY = 8  # parts of what is between two instants, where a limit is near
-NEAR = 0.02  # share of a limit that is left where it is near
+NEAR = 0.02  # share of a limit that is left where it is near, beside what it changes by
 
 
 @dataclass(frozen=True)
@@ -86,10 +86,15 @@ class PathPlan:
 
 
 def _near_a_limit(problem: PathProblem, values: Array) -> NDArray[np.bool_]:
-    """Which of the instants (k,) come near a limit of the sampled values (k, v), or beyond it."""
+    """Which of the instants (k,) come near a limit of the sampled values (k, v), or beyond it.
+
+    Near is what goes on as before would come to by the next instant, or came from since the last.
+    """
     bounds, sampled = sampled_bounds(problem), values[:, WRENCHES:]
     room = np.minimum(bounds.upper - sampled, sampled - bounds.lower) / bounds.scale
-    return np.asarray((room < NEAR).any(axis=1))
+    moved = np.abs(np.diff(sampled, axis=0)) / bounds.scale
+    most = np.maximum(np.vstack([moved[:1], moved]), np.vstack([moved, moved[-1:]]))
+    return np.asarray((room < NEAR + most).any(axis=1))
 
 
 @kernel

@@ -67,8 +67,17 @@ def _within_limits(
 ) -> PathPlan:
     """A plan that keeps the limits, where `plan` got stuck; the nearest where none is found.
 
-    Thoroughly on the coarse pieces, where that takes little; what those can do, the fine can.
+    `starts` are coefficients on the coarse pieces, the posture held first.
+
+    From the posture held where that keeps them itself, so that no path is refused that the vehicle
+    alone can follow. Else thoroughly on the coarse pieces, where that takes little; what those can
+    do, the fine can.
     """
+    still = fine.taken_from(coarse.knots, starts[0])
+    alone = PathPlan(fine.problem, fine.knots, still, plan.iterations)
+    if alone.report.feasible:
+        other = _on_fine(fine, still, FULL.scaled(size), size)
+        return other if other.report.feasible else alone
     for number, start in enumerate(starts):
         progress(0.5 + number / 2 / len(starts), "within the limits")
         found = solve_on_knots(coarse, start, THOROUGH.scaled(size))

@@ -50,7 +50,7 @@ class ImuSensor(SensorModel):
         self._mount = misalignment(seed, self.type.name, section.misalignment_deg)
         self._errors = _further_errors(section, seed, self.type.name)
         variance = self._noise**2 + self._bias_std**2
-        self._covariances = tuple(np.diag(variance[k : k + 3]) for k in (0, 3, 6))
+        self._covariances = [np.diag(variance[k : k + 3]) for k in (0, 3, 6)]
 
     def sample(self, trajectory: Trajectory) -> tuple[ImuSample, ...]:
         """Samples that are due on the trajectory."""
@@ -78,7 +78,10 @@ class ImuSensor(SensorModel):
             turned, turn, force = self._rounded(turned, turn, force)
         if not self._oriented:
             turned = LEVEL.copy()
-        return ImuSample(stamp, turned, turn, force, *self._covariances, oriented=self._oriented)
+        attitude, rate, specific = self._covariances
+        return ImuSample(
+            stamp, turned, turn, force, attitude, rate, specific, oriented=self._oriented
+        )
 
     def _in_its_axes(self, quaternion: Array, motion: Array) -> tuple[Array, Array, Array]:
         """Attitude, turn rate and specific force about the unit's own axes, scaled as it does."""

@@ -68,7 +68,8 @@ class DvlVelocity(Measurement):
         if not stated.any():
             return 0.0
         known = self._noise**2 + (self._scale * sample.velocity) ** 2
-        return max(float((stated - known).max()), 0.0)
+        excess = float((stated - known).max())
+        return excess if excess > 0.0 else 0.0
 
     def _correct_alone(
         self, state: NavigationState, sample: DvlSample, variance: float, rate: Array, gate: float
