@@ -18,7 +18,7 @@ from uvms_observer.arrivals import sensor_inputs, used_sensors
 from uvms_observer.disturbance import ObserverConfig
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig
-from uvms_observer.navigation.resume import carried, fits, is_in_the_middle, lost
+from uvms_observer.navigation.resume import carried, doubted, fits, is_in_the_middle, lost
 from uvms_observer.truth import TruthPart
 
 CERTAIN = 10.0
@@ -27,6 +27,10 @@ LOST = Trouble(
     ERROR,
     "started in the middle of a run without an estimate: the position is not known before one is"
     " measured",
+)
+RESET = Trouble(
+    ERROR,
+    "reset on request: position and velocity are not known before a position is measured",
 )
 REMEMBERED = 4
 """Estimates from before that are kept: of the node's start, and of the last jumps of time."""
@@ -53,6 +57,8 @@ class NavigationPart(Part):
         self._faults: Sequence[UvmsError] = ()
         self._begun = False
         self._known, self._waits_for = True, ""
+        self._unknown = LOST
+        self._doubted: Odometry | None = None
         self._certain = CERTAIN * _fix_noise(vehicle) + CERTAIN
         self._remembered: list[Odometry] = []
         self._good: Odometry | None = None
@@ -86,13 +92,18 @@ class NavigationPart(Part):
     def _begin(self, stamp: int) -> None:
         """Start the filter where it was, if that is known, or say that it is not."""
         resume = getattr(self.filter, "resume", None)
-        if estimates := [each for each in self._remembered if fits(each, stamp)]:
+        if self._doubted is not None:
+            self._known, self._unknown = False, RESET
+            if resume is not None:
+                resume(doubted(self._doubted, stamp))
+            self._doubted = None
+        elif estimates := [each for each in self._remembered if fits(each, stamp)]:
             newest = max(estimates, key=lambda each: each.stamp)
             self._known = resume is not None
             if resume is not None:
                 resume(carried(newest, stamp))
         elif is_in_the_middle(stamp):
-            self._known = False
+            self._known, self._unknown = False, LOST
             if resume is not None:
                 resume(lost(stamp, np.array(self._config.initial_position_m)))
 
@@ -108,12 +119,30 @@ class NavigationPart(Part):
         """The odometry, as long as it would mean nothing."""
         return (topics.ODOMETRY,) if self._waits_for else ()
 
+    def reset(self) -> str:
+        """Start the filter anew, as somebody asks who knows that it is wrong; says what follows.
+
+        It begins at the next tick where it was, with nothing known of position and velocity, so
+        that the first fix decides. Biases and what it thought of its sensors are forgotten.
+        """
+        last = self.last
+        if last is None:
+            return "the filter has not begun yet: there is nothing to reset"
+        self.restart(RESET.text)
+        self._remembered, self._doubted = [], last
+        return RESET.text
+
+    @property
+    def last(self) -> Odometry | None:
+        """The newest estimate, or that which a reset began from; None before the first."""
+        return self.estimate or self._good or self._doubted
+
     def trouble(self) -> Trouble | None:
         """Where the filter does not know the position, or does without a sensor."""
         if self._waits_for:
             return Trouble(WARN, self._waits_for)
         if not self._known:
-            return LOST
+            return self._unknown
         found = getattr(self.filter, "trouble", None)
         return found() if found is not None and self._begun else None
 

@@ -20,7 +20,8 @@ NEEDED = (
 
 _QUATERNION = ("qw", "qx", "qy", "qz")
 _SENSOR = ("imu_roll", "imu_pitch")
-OPTIONAL = (*_QUATERNION, *_SENSOR)
+INERTIAL = (*_SENSOR, "imu_yaw", "acx", "acy", "acz")
+OPTIONAL = (*_QUATERNION, *INERTIAL)
 """Columns that are used for checks and comparison only, where they are present."""
 
 Log = Callable[[str], None]
@@ -41,6 +42,7 @@ class Trial:
     alpha: Array  # (k, 4) measured axes e, d, c, b of the arm, rad: base to wrist
     accepted: NDArray[np.bool_]  # (k,) whether the motion capture may be scored
     sensor: Array | None = None  # (k, 2) roll, pitch of the vehicle's own attitude sensor, degrees
+    inertial: Array | None = None  # (k, 6) its roll, pitch, yaw, degrees; specific force, m/s^2
 
     @property
     def tilt(self) -> Array:
@@ -72,7 +74,7 @@ def read_trial(file: Path, log: Log = lambda note: None) -> Trial:
     accepted = columns.get("moc_ok", np.ones(len(t))) > 0.5
     if not accepted.any():
         raise TrialError(f"{file}: column moc_ok: is 0 throughout, so nothing can be scored")
-    sensor = optional_columns(columns, *_SENSOR)
+    sensor, inertial = (_whole(columns, *names) for names in (_SENSOR, INERTIAL))
     trial = Trial(
         file.stem,
         t,
@@ -81,7 +83,8 @@ def read_trial(file: Path, log: Log = lambda note: None) -> Trial:
         _stack(columns, "gx", "gy", "gz"),
         _stack(columns, "q_e", "q_d", "q_c", "q_b"),
         accepted,
-        sensor if sensor is not None and np.isfinite(sensor).all() else None,
+        sensor,
+        inertial,
     )
     check_angles(file, trial.alpha)
     for note in (
@@ -90,6 +93,12 @@ def read_trial(file: Path, log: Log = lambda note: None) -> Trial:
     ):
         log(f"note: {note}")
     return trial
+
+
+def _whole(columns: dict[str, Array], *names: str) -> Array | None:
+    """Optional columns (k, n); None if one is absent or has a gap."""
+    found = optional_columns(columns, *names)
+    return found if found is not None and np.isfinite(found).all() else None
 
 
 def _columns(file: Path) -> dict[str, Array]:

@@ -1,8 +1,10 @@
 """`uvms validate`: compare the model with recorded trials."""
 
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
+from uvms_analysis.trials.navigate import Navigated, is_installed, navigate, navigated_vehicle
+from uvms_analysis.trials.navigation_table import navigation_text
 from uvms_analysis.trials.outcome import CONSTANT, DYNAMIC, QUASI_STATIC, Outcome, table
 from uvms_analysis.trials.predict import (
     constant,
@@ -11,9 +13,10 @@ from uvms_analysis.trials.predict import (
     prepare_trial,
     quasi_static,
 )
-from uvms_analysis.trials.read import Trial, read_trials
+from uvms_analysis.trials.read import INERTIAL, Log, Trial, read_trials
 from uvms_analysis.trials.score import AXES, medians
 from uvms_analysis.trials.table import Scores, table_text, write_csv
+from uvms_analysis.trials.unit import unit_text
 from uvms_core.vehicle import Vehicle, load_vehicle
 
 
@@ -38,12 +41,26 @@ def remarks(rows: Scores) -> list[str]:
     ]
 
 
+def navigated(vehicle: str, trials: list[Trial], log: Log = lambda line: None) -> list[Navigated]:
+    """The navigation filter on those trials that have an inertial unit; none without the filter."""
+    having = [trial for trial in trials if trial.inertial is not None]
+    if having and not is_installed():
+        log("note: navigation is left out: the package uvms_observer is not installed")
+        return []
+    if len(having) < len(trials):
+        log(
+            f"note: navigation is left out in {len(trials) - len(having)} of {len(trials)} trials:"
+            f" they lack one of the columns {', '.join(INERTIAL)}, or a value in it"
+        )
+    return [navigate(trial, navigated_vehicle(vehicle, trial)) for trial in having]
+
+
 def validate(
     trials: str,
     vehicle: str,
     output: str | None,
     figures: bool,
-    log: Callable[[str], None] = lambda line: None,
+    log: Log = lambda line: None,
     trim: bool = True,
 ) -> str:
     """Predict, write what was asked for, and return the table."""
@@ -53,6 +70,9 @@ def validate(
     rows = table(found)
     text = table_text([each.trial.name for each in found], rows)
     text = "\n".join([text, *remarks(rows)])
+    if fixed := navigated(vehicle, recorded, log):
+        having = [trial for trial in recorded if trial.inertial is not None]
+        text = "\n\n".join([text, navigation_text(fixed), unit_text(having, described)])
     if output is None:
         return text
     folder = Path(output)

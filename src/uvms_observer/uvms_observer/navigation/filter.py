@@ -44,10 +44,11 @@ class NavigationFilter:
 
     Args:
         vehicle: sensors with lever arms and noise, water, datum of the map.
-        config: start, gate, latency, factors on the noise.
+        config: start, gate, latency, factors on the noise; None: the defaults.
     """
 
-    def __init__(self, vehicle: Vehicle, config: NavigationConfig) -> None:
+    def __init__(self, vehicle: Vehicle, config: NavigationConfig | None = None) -> None:
+        config = config or NavigationConfig()
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
         self._estimator = Estimator(
@@ -188,6 +189,17 @@ class NavigationFilter:
                 self._instruments.periods[name],
             )
             for name, tally in self._estimator.tallies.items()
+        }
+
+    def mean_nis(self) -> dict[str, float]:
+        """Normalized innovation squared of each sensor, over its dimension: 1 where all is right.
+
+        The mean over the samples that were used; sensors without any are left out.
+        """
+        return {
+            name: tally.distance / (tally.accepted * self._estimator.size_of(name))
+            for name, tally in self._estimator.tallies.items()
+            if tally.accepted
         }
 
     def trouble(self) -> Trouble | None:

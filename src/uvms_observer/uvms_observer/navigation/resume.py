@@ -56,6 +56,15 @@ def carried(estimate: Odometry, stamp: int) -> Odometry:
     )
 
 
+def doubted(estimate: Odometry, stamp: int) -> Odometry:
+    """Where the estimate has it at a later stamp (ns), but neither place nor velocity is known."""
+    here = carried(estimate, stamp)
+    unknown = lost(stamp, here.position)
+    return replace(
+        here, pose_covariance=unknown.pose_covariance, twist_covariance=unknown.twist_covariance
+    )
+
+
 def lost(stamp: int, position: Array) -> Odometry:
     """Anywhere: the configured position (3,) with a covariance that says so."""
     pose = np.diag([LOST_M, LOST_M, LOST_DEPTH_M, np.pi, np.pi, np.pi]) ** 2

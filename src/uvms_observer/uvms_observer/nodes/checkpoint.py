@@ -44,6 +44,15 @@ class Checkpoint:
         part.write_text(text, encoding="utf-8")
         os.replace(part, self._path)
 
+    def forget(self) -> None:
+        """Nothing that was kept is to be gone on from.
+
+        Raises:
+            OSError: it cannot be removed.
+        """
+        self._written = None
+        self._path.unlink(missing_ok=True)
+
     def read(self) -> Odometry | None:
         """The estimate of this run; None where there is none or it cannot be read."""
         try:

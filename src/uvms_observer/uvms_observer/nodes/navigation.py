@@ -4,12 +4,14 @@ from pathlib import Path
 from typing import Any
 
 from pydantic import Field
+from std_srvs.srv import Trigger
 
 from uvms_core import topics
 from uvms_core.config import Config
 from uvms_core.diagnostics import ERROR
 from uvms_core.ros.main import main_of
 from uvms_core.ros.part_node import PartNode
+from uvms_core.signals import Odometry
 from uvms_core.tick_gate import Tick
 from uvms_observer import NavigationConfig
 from uvms_observer.nodes.checkpoint import Checkpoint
@@ -37,6 +39,7 @@ class NavigationNode(PartNode):
     def __init__(self, **options: Any) -> None:
         super().__init__(**options)
         self.offer(topics.ODOMETRY_GAPS)
+        self.create_service(Trigger, f"{self.get_name()}/reset", self._answer_reset)
 
     def make_part(self) -> NavigationPart | TruthPart:
         """The navigation filter that the parameters name, or the truth."""
@@ -57,11 +60,33 @@ class NavigationNode(PartNode):
         is_lost = trouble is not None and trouble.level == ERROR
         if self._checkpoint is None or estimate is None or is_lost:
             return
+        self._keep(estimate)
+
+    def _keep(self, estimate: Odometry | None) -> None:
+        """Write the estimate to the checkpoint, or remove what is there."""
+        if self._checkpoint is None:
+            return
         try:
-            self._checkpoint.write(estimate)
+            if estimate is None:
+                self._checkpoint.forget()
+            else:
+                self._checkpoint.write(estimate)
         except OSError as fault:
             text = f"checkpoint_file {fault.filename}: {fault.strerror}"
             self.get_logger().warning(text, throttle_duration_sec=60.0)
+
+    def _answer_reset(self, _: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """Start the filter anew, loudly."""
+        if not isinstance(self.part, NavigationPart):
+            response.success = False
+            response.message = "navigation has the truth for its source, which nobody resets"
+            return response
+        response.success, response.message = True, self.part.reset()
+        self._keep(None)
+        now = 0 if self.part.last is None else self.part.last.stamp
+        self.get_logger().error(response.message)
+        self.report(now, ERROR, response.message)
+        return response
 
 
 def main(args=None) -> int:
