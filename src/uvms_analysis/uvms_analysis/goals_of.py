@@ -10,7 +10,7 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.errors import LogError, determine
 from uvms_core.signals import Array
 
-NOTHING = {"rms": None, "max": None, "end": None}
+NOTHING: dict[str, float | None] = {"rms": None, "max": None, "end": None}
 
 
 def goals_of(run: Analysis) -> list[dict[str, Any]]:
