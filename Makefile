@@ -23,7 +23,7 @@ run: setup-run ## set up, then run the manipulation (other scenario: SCENARIO=ho
 	@$(BIN)/uvms run $(SCENARIO) $(ARGS)
 
 test: setup ## set up, then run all tests (some of them: ARGS="tests/uvms_planner -k cost")
-	@$(BIN)/python -m pytest --numprocesses 2 --dist loadgroup $(ARGS)
+	@$(BIN)/python -m pytest --numprocesses 2 $(ARGS)
 
 bench: setup ## set up, then measure speed and quality, one JSON object a line
 	@$(BIN)/python benchmarks/run.py $(ARGS)

@@ -4,6 +4,7 @@ import os
 import shutil
 import tempfile
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -24,11 +25,23 @@ def pytest_configure(config: pytest.Config) -> None:
         config.add_cleanup(lambda: shutil.rmtree(folder, ignore_errors=True))
 
 
-@pytest.hookimpl(tryfirst=True)  # xdist reads the groups in the same hook
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """One group for the folders of `ALONE`; of the rest each file, for the sake of fixtures."""
-    for item in items:
-        own = item.path.relative_to(HERE)
-        is_alone = own.parts[0] in ALONE and own.as_posix() not in BUILDS
-        group = "graphs" if is_alone else str(own)
-        item.add_marker(pytest.mark.xdist_group(group))
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Several processes take groups of tests (`group`), so that each fixture is made once.
+
+    Marks of xdist's own groups are without effect from pytest 9.2 on.
+    """
+    from xdist.scheduler import LoadScopeScheduling
+
+    class Groups(LoadScopeScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return group(nodeid)
+
+    return Groups(config, log)
+
+
+def group(nodeid: str) -> str:
+    """All tests of the folders of `ALONE`; of the rest each file."""
+    file = nodeid.split("::")[0].removeprefix(f"{HERE.name}/")
+    is_alone = file.split("/")[0] in ALONE and file not in BUILDS
+    return "graphs" if is_alone else file
