@@ -103,6 +103,6 @@ def test_the_field_has_its_cases_each_with_a_requirement_and_fits_its_time():
     assert len(cases) >= 40
     assert all(len(one.required) > 1 for one in cases)
     seconds = sum(one.values["duration_s"] * len(one.seeds) for one in chosen)
-    # 23 minutes on 2 cores at 15 times real time (measured: 55 s of arm_swing in 3.7 s of CPU).
+    # 24 minutes on 2 cores at 15 times real time (measured: 55 s of arm_swing in 3.7 s of CPU).
     # More than a quarter of it are cases with ten seeds: the worst of five says too little.
-    assert seconds <= 42_000.0
+    assert seconds <= 43_000.0
