@@ -79,7 +79,7 @@ def test_a_vehicle_file_with_an_unknown_sensor_is_refused(tmp_path):
     assert done.returncode != 0
     assert (
         "sensors.usbl: no installed package brings a sensor 'usbl' (entry point in uvms.sensors);"
-        " choose from depth, dvl, encoders, gps, heading, imu, magnetometer, position_fix,"
+        " choose from depth, dvl, gps, heading, imu, magnetometer, position_fix,"
         " pressure, target_marker"
     ) in done.stderr
     assert "Traceback" not in done.stderr
@@ -91,8 +91,8 @@ def test_a_vehicle_file_with_an_unknown_sensor_is_refused(tmp_path):
         ({"noise_m": 0.0}, "sensors.usbl.noise_m: Input should be greater than 0 (got 0.0)"),
         (
             {"nois_m": 1.0},
-            "sensors.usbl.nois_m: Extra inputs are not permitted; known names here: drop_out_rate,"
-            " latency_s, noise_m, position_m, rate_hz",
+            "sensors.usbl.nois_m: Extra inputs are not permitted; known names here: axes,"
+            " drop_out_rate, frame_id, latency_s, noise_m, position_m, rate_hz, rpy_deg, topic,",
         ),
         ({"rate_hz": 7.0}, "the period of vehicle.sensors.usbl.rate_hz = 7: 0.142857 s is not a"),
     ],

@@ -23,7 +23,11 @@ WRONG_WAY_DEG = 45.0
 """Angle between the measured up and the true one beyond which it is no motion of a vehicle: that
 would take an acceleration of gravity's size."""
 SIZE = (0.5, 1.5)
-"""Length of the specific force of a vehicle that starts, over gravity's."""
+"""Length of the specific force, over gravity's, at which a unit without attitude can be levelled."""
+AT_REST = 0.1
+"""Share of gravity by which the specific force of a unit at rest, or nearly so, may be off it: a
+large bias and the swing of waves. Beyond, the vehicle is being pushed, and one sample tells nothing
+of how the unit is mounted."""
 
 
 def level(force: Array, heading: float = 0.0) -> Array:
@@ -48,17 +52,20 @@ def check_gravity(name: str, section: Imu, sample: ImuSample, gravity: float) ->
         sample: its first one, turned as the file declares.
         gravity: m/s^2.
 
+    A unit that measures its attitude may start in any motion, even in a violent one.
+
     Raises:
         SignalError: it does not; says which field of the vehicle file would make it.
     """
     force, R = sample.linear_acceleration, _attitude(sample)
     size = float(np.linalg.norm(force)) / gravity
-    if not SIZE[0] <= size <= SIZE[1]:
+    if _is_no_motion(size, gravity) or not (sample.oriented or SIZE[0] <= size <= SIZE[1]):
         raise SignalError(
             f"{name}.linear_acceleration: has the size of {size:.3g} g; at rest it must be the"
             " specific force, 1 g upwards, in m/s^2 (not in g, and gravity not taken off)"
         )
-    if _tilt_deg(R @ force) <= WRONG_WAY_DEG:
+    moves = sample.oriented and abs(size - 1.0) > AT_REST
+    if moves or _tilt_deg(R @ force) <= WRONG_WAY_DEG:
         return
     raise SignalError(
         f"{name}.linear_acceleration: {np.round(force, 2).tolist()} m/s^2 in body axes points"
@@ -66,6 +73,11 @@ def check_gravity(name: str, section: Imu, sample: ImuSample, gravity: float) ->
         f" upwards (forward-right-down: [0, 0, -{gravity:.2f}] when level)."
         f" {_advice(name, section, sample)}"
     )
+
+
+def _is_no_motion(size: float, gravity: float) -> bool:
+    """Whether a force of this size over gravity's is rather 1 in units of g, or without gravity."""
+    return abs(size * gravity - 1.0) <= AT_REST or size <= 0.5 * AT_REST
 
 
 def _attitude(sample: ImuSample) -> Array:
