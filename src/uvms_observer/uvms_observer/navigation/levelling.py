@@ -23,7 +23,7 @@ WRONG_WAY_DEG = 45.0
 """Angle between the measured up and the true one beyond which it is no motion of a vehicle: that
 would take an acceleration of gravity's size."""
 SIZE = (0.5, 1.5)
-"""Length of the specific force, over gravity's, at which a unit without attitude can be levelled."""
+"""Size of the specific force, over gravity's, at which a unit without attitude can be levelled."""
 AT_REST = 0.1
 """Share of gravity by which the specific force of a unit at rest, or nearly so, may be off it: a
 large bias and the swing of waves. Beyond, the vehicle is being pushed, and one sample tells nothing
