@@ -42,7 +42,7 @@ def correct(
         residual: (m,) measured minus expected.
         N: (m, m) covariance of the measurement's noise.
         gate: largest d^2 that is accepted.
-        is_fix: whether a position or a depth is measured, which tells the DVL's misalignment.
+        is_fix: whether a position is measured, from which the DVL's misalignment can be told.
             Other samples are weighed as if that were known, and the covariance accounts for its not
             being so: through accelerations they would estimate it, worse than mounting does.
 

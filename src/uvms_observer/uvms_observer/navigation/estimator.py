@@ -8,7 +8,7 @@ from functools import partial
 import numpy as np
 
 from uvms_core.sensors import INERTIAL
-from uvms_core.signals import Array, ImuSample, Odometry, to_seconds
+from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
 from uvms_observer.navigation import consistency, undecided
 from uvms_observer.navigation.alignment import aligned, levelled
 from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
@@ -36,6 +36,8 @@ LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
 """Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
 vehicle that was pushed."""
+SETTLED = to_nanoseconds(1.0)
+"""After an unusual reading of the inertial unit, before the estimate is itself again."""
 
 
 class Estimator:
@@ -76,6 +78,7 @@ class Estimator:
         self._sample: ImuSample | None = None  # that sample
         self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise)
         self._memory: ScreenMemory = remember(self._rate, self._force)
+        self._unusual = -SETTLED  # ns, stamp of the last of them that was held back or unlikely
 
     def copied(self) -> "Estimator":
         """An estimator that goes on alone from here."""
@@ -189,6 +192,8 @@ class Estimator:
         screened, self._memory = self._screen.judge(
             self._memory, sample.angular_velocity, sample.linear_acceleration, dt
         )
+        if screened.turn is not None:
+            self._unusual = sample.stamp
         self._propagate(sample.stamp, screened.rate, screened.force)
         self._rate, self._force, self._inertial = screened.rate, screened.force, sample.stamp
         self._sample = sample
@@ -285,3 +290,15 @@ class Estimator:
         self._measurements[name].correct(other, reading.sample, self._rate, np.inf)
         before, self.tallies[name] = self._doubts.get(name), tally
         self._doubts[name] = undecided.doubt(self.state, other, tally, before, reading.stamp)
+        self._forget_jumps_of_its_own(reading.stamp)
+
+    def _forget_jumps_of_its_own(self, stamp: int) -> None:
+        """Where the estimate may have jumped, and not a sensor, no sensor has to jump back.
+
+        That is so while the inertial unit reads what a vehicle hardly does, and where two sensors
+        are away at once.
+        """
+        away = [name for name, tally in self.tallies.items() if tally.away is not None]
+        if len(away) > 1 or stamp - self._unusual < SETTLED:
+            for name in away:
+                self.tallies[name] = self.tallies[name]._replace(away=None)

@@ -66,7 +66,7 @@ def correct_depth(
     residual[0] = measured - residual[0]
     N = np.empty((1, 1))
     N[0, 0] = variance
-    return correct(state, H, residual, N, gate, True)
+    return correct(state, H, residual, N, gate)
 
 
 @exact_kernel
@@ -80,4 +80,4 @@ def correct_level(
     H[0, DEPTH_BIAS] = 0.0
     N = np.empty((1, 1))
     N[0, 0] = variance
-    return correct(state, H, residual, N, gate, True)
+    return correct(state, H, residual, N, gate)
