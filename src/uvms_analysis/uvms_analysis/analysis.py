@@ -207,10 +207,20 @@ class Analysis:
     @cached_property
     def _path_asked_s(self) -> float:
         """When the planner accepted the path; -1 where nobody says."""
+        began = [goal["began_s"] for goal in self._path_goals]
+        return float(began[0]) if began and began[0] is not None else -1.0
+
+    @property
+    def _path_goals(self) -> list[Mapping[str, Any]]:
+        """What the run's end tells of its goals that are paths."""
         end = self.log.end
-        paths = [goal for goal in end.goals if goal["kind"] == "path"] if end is not None else []
-        began = paths[0]["began_s"] if paths else None
-        return -1.0 if began is None else float(began)
+        return [] if end is None else [goal for goal in end.goals if goal["kind"] == "path"]
+
+    @property
+    def _is_before_its_path(self) -> bool:
+        """Whether the path is a goal whose turn had not come when the run ended."""
+        goals = self._path_goals
+        return bool(goals) and all(goal["began_s"] is None for goal in goals)
 
     def _fitted_start(self) -> float:
         if self.path is None or self.planned is None:
@@ -229,7 +239,7 @@ class Analysis:
         the planned motion of the joints puts it; without either, where it is at the start.
         """
         time = self.truth.time
-        if self.path is not None:
+        if self.path is not None and not self._is_before_its_path:
             curve = EndEffectorPath(self.path)
             after = time - self.path_start_s
             index = np.flatnonzero((after >= 0.0) & (after <= curve.duration))

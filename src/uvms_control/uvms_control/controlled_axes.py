@@ -24,7 +24,7 @@ Flags = NDArray[np.bool_]
 AXES = ("surge", "sway", "heave", "roll", "pitch", "yaw")
 FIRST = (2, 5, 0, 1)
 """Order in which axes are taken: those without a righting moment of their own come first."""
-RIGHTED = (3, 4)
+RIGHTED = (3, 4)  # files with numba kernels take it
 """Then these, the one with the greater moment first."""
 INDEPENDENT = 0.05
 """Least singular value of the rows of the axes taken, each row of unit length in shares of the

@@ -88,7 +88,7 @@ class ImuSample:
 Lock = Literal["bottom", "water"]
 """What a DVL may measure against."""
 BOTTOM_LOCK: Final = "bottom"
-WATER_LOCK: Final = "water"
+WATER_LOCK: Final = "water"  # files with numba kernels take it
 
 
 @dataclass(frozen=True)

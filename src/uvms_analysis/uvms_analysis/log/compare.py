@@ -51,6 +51,8 @@ def _difference(one: Any, two: Any) -> float:
         return 0.0 if one is two else float("inf")
     if is_dataclass(one) and is_dataclass(two):  # a part of a signal
         return _distance(one, two)
+    if isinstance(one, str):  # what a sensor has locked on
+        return 0.0 if one == two else float("inf")
     if isinstance(one, tuple) and any(isinstance(each, str) for each in one):  # names
         return 0.0 if one == two else float("inf")
     a, b = np.asarray(one, dtype=float), np.asarray(two, dtype=float)

@@ -15,7 +15,8 @@ from uvms_core.topic import Topic
 from uvms_core.vehicle.sensors import Imu
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
-LEVEL.flags.writeable = False
+LEVEL.flags.writeable = False  # files with numba kernels take it
+"""Attitude of a sample without one."""
 
 
 def to_message(topic: Topic, sample: ImuSample, names: Sequence[str]) -> Plain:
