@@ -1,6 +1,6 @@
 """A run as its log shows it: truth against estimate, path and reference."""
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
