@@ -108,6 +108,8 @@ def test_nothing_is_refused_by_bounds_of_another_vehicle_or_at_full_authority(na
         for topic, signal in tick.outputs:
             if topic is topics.THRUSTER_COMMAND and "thrusters" in name:
                 signal = replace(signal, thrust=way * limits)
+            if topic is topics.THRUSTER_COMMAND and "joints" in name:  # the arm alone moves it all
+                signal = replace(signal, thrust=0.0 * limits)
             if topic is topics.JOINT_COMMAND and "joints" in name:
                 signal = replace(signal, effort=way * torques)
             outputs.append((topic, signal))
