@@ -44,6 +44,8 @@ class PartNode(UvmsNode):
         if isinstance(fault, UnsafeOutputError):
             self.unsafe_outputs += 1
             self.complain(tick.stamp, diagnostics.ERROR, str(fault))
+        elif tick.missing:  # what was sent and not usable is counted already
+            self.complain(tick.stamp, diagnostics.ERROR, str(fault))
         elif fault is not None:
             self.refuse(tick.stamp, [fault])
         self.refuse(tick.stamp, self.part.take_faults())
