@@ -1,5 +1,6 @@
 """A heading, of a compass or another attitude sensor."""
 
+from abc import abstractmethod
 from typing import Any
 
 import numpy as np
@@ -32,9 +33,9 @@ class Course(Measurement):
         else:
             self._variance += as_white(bias, section.rate_hz)
 
+    @abstractmethod
     def errors(self, section: Any) -> tuple[float, float]:
         """Std of noise and bias as an angle, rad."""
-        raise NotImplementedError
 
     def stated(self, variance: float) -> float:
         """Noise of a sample whose message states a variance, rad^2."""
