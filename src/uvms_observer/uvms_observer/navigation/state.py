@@ -60,6 +60,7 @@ class NavigationState(NamedTuple):
     covariance: Array  # (SIZE, SIZE) of the error state
     innovation: Array  # (3, WIDEST) of the last measurement: residual, std of its noise, its own
     # std; zeros beyond its size
+    reference: Array  # (3,) m/s, velocity after the last correction by the DVL, see `dvl.py`
     target: Array = np.zeros(0)  # (7,) pose of the work object, see `target.py`; (0,): none
     cross: Array = np.zeros((0, SIZE))  # (6, SIZE) covariance of its error with the error state
     target_covariance: Array = np.zeros((0, 0))  # (6, 6) of its error
@@ -85,4 +86,5 @@ def empty_state() -> NavigationState:
         np.zeros(SIZE - FURTHER),
         np.zeros((SIZE, SIZE)),
         np.zeros((3, WIDEST)),
+        np.zeros(3),
     )
