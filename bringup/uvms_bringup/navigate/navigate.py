@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -22,6 +22,7 @@ from uvms_core.config import validated
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle, dump_vehicle, load_vehicle
+from uvms_core.vehicle.loader import vehicle_from_data
 from uvms_dynamics.simulation import PlantConfig
 from uvms_observer import NavigationConfig, NavigationFilter
 from uvms_observer.arrivals import used_sensors
@@ -90,6 +91,8 @@ def navigate(
     bag = open_bag(log)
     setup = setup_of(bag, vehicle)
     wanted = topic_map(bag, setup.vehicle, given)
+    if not bag.is_ours:
+        setup = replace(setup, vehicle=_as_recorded(setup.vehicle, wanted))
     feed = Feed(bag, wanted, setup.vehicle, setup.period, stamps)
     track = None if wanted.reference is None else read_track(bag, wanted.reference, stamps == LOG)
     start = None if bag.is_ours else _start(feed, wanted, setup, track)
@@ -102,6 +105,19 @@ def navigate(
     text = json.dumps(summary, indent=2)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     return summary | {"output": str(folder)}
+
+
+def _as_recorded(vehicle: Vehicle, wanted: TopicMap) -> Vehicle:
+    """The vehicle without the sensors of which the log has nothing: nobody waits for those.
+
+    Raises:
+        VehicleFileError, ConfigError: it cannot be navigated without.
+    """
+    missing = [each.name for each in used_sensors(vehicle) if each.name not in wanted.sensors]
+    if not missing:
+        return vehicle
+    without = {f"sensors.{name}": None for name in missing}
+    return vehicle_from_data(vehicle.model_dump(warnings=False), vehicle.name, without)
 
 
 def _beside(path: Path) -> Path:
