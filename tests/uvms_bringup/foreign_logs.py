@@ -106,6 +106,17 @@ def written(folder, storage, messages):
     return folder
 
 
+def set_back(messages, after_s, by_s):
+    """The same with stamps that go back at a time; they were recorded as before."""
+    by, out = round(1e9 * by_s), []
+    for topic, kind, stamp, message in messages:
+        if stamp > 1e9 * after_s:
+            new = header(stamp - by, message["header"]["frame_id"])
+            message = message | {"header": new}
+        out.append((topic, kind, stamp, message))
+    return out
+
+
 def header(stamp, frame):
     sec, nanosec = divmod(EPOCH + stamp, 10**9)
     return {"stamp": {"sec": sec, "nanosec": nanosec}, "frame_id": frame}

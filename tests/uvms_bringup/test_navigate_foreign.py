@@ -142,3 +142,64 @@ def test_a_marine_dvl_and_a_magnetometer(run, tmp_path, storage):
     assert_right(run, estimates)
     assert summary["position_error_m"]["max"] < 0.2
     assert summary["attitude_inside_3_sigma"] >= 0.97
+
+
+class TestRefused:
+    """What cannot be navigated, in one line that names what is wrong and what to do."""
+
+    def said(self, capsys, log, *options):
+        assert main(["navigate", str(log), *options]) == 2
+        return capsys.readouterr().err
+
+    def test_a_log_without_an_inertial_unit(self, run, tmp_path, capsys):
+        log = foreign.written(tmp_path / "log", "mcap", foreign.pressure(run, "/bar30"))
+        text = self.said(capsys, log, "--vehicle", "reference_auv")
+        assert "has no sensor_msgs/msg/Imu, which navigation needs" in text
+        assert "/bar30 [sensor_msgs/msg/FluidPressure]" in text
+
+    def test_a_vehicle_without_an_inertial_unit(self, run, tmp_path, capsys):
+        log = foreign.written(tmp_path / "log", "mcap", foreign.imu(run, "/imu"))
+        vehicle = load_vehicle().model_dump(mode="json", warnings=False)
+        del vehicle["sensors"]["imu"]
+        (tmp_path / "auv.yaml").write_text(json.dumps(vehicle), encoding="utf-8")
+        text = self.said(capsys, log, "--vehicle", str(tmp_path / "auv.yaml"))
+        assert "sensors.imu" in text
+
+    def test_an_inertial_unit_without_attitude_and_no_heading_in_the_log(
+        self, run, tmp_path, capsys
+    ):
+        added = {"sensors.heading": {**PLACE, "noise_deg": 1.0}}
+        _, file = vehicle_of(tmp_path, {**NO_ATTITUDE, **added})
+        messages = foreign.imu(run, "/imu", axes="flu", attitude=False)
+        log = foreign.written(tmp_path / "log", "mcap", messages)
+        text = self.said(capsys, log, "--vehicle", file)
+        assert "no sensor measures the heading" in text
+        assert "heading: left out, since the log has no sensor_msgs/msg/Imu besides" in text
+
+    @pytest.mark.parametrize("storage", foreign.STORES)
+    def test_a_clock_that_was_set_back(self, run, tmp_path, capsys, storage):
+        messages = foreign.set_back(foreign.imu(run, "/imu"), 8.0, 5.0)
+        log = foreign.written(tmp_path / "log", storage, messages)
+        text = self.said(capsys, log, "--vehicle", "reference_auv")
+        assert "the stamps of /imu go back from" in text
+        assert "--stamps log" in text
+        words = ["--vehicle", "reference_auv", "--stamps", "log", "--output", str(tmp_path / "out")]
+        assert main(["navigate", str(log), *words]) == 0
+
+    def test_axes_that_are_not_declared(self, run, tmp_path, capsys):
+        """Specific force down where it must be up: nothing can begin, and the fields are named."""
+        log = foreign.written(tmp_path / "log", "mcap", foreign.imu(run, "/imu", axes="flu"))
+        text = self.said(capsys, log, "--vehicle", "reference_auv")
+        assert "sensors.imu.axes: flu" in text
+
+    def test_one_topic_that_may_be_of_two_sensors(self, run, tmp_path, capsys):
+        """Neither is guessed; the choice is named."""
+        added = {"sensors.position_fix": USBL, "sensors.depth": {**PLACE, "noise_m": 0.02}}
+        vehicle, file = vehicle_of(tmp_path, added)
+        messages = [*foreign.imu(run, "/imu"), *foreign.depths(run, "/pose", vehicle)]
+        log = foreign.written(tmp_path / "log", "mcap", messages)
+        summary, _ = navigated(log, file, tmp_path)
+        assert summary["topics"] == {"imu": "/imu"}
+        printed = capsys.readouterr().out
+        assert "depth: left out, since /pose may as well be that of position_fix" in printed
+        assert "--topics depth=/pose" in printed

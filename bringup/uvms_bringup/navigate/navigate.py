@@ -19,6 +19,7 @@ from uvms_bringup.navigate.topic_map import TopicMap, topic_map
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
 from uvms_core.config import validated
+from uvms_core.errors import ConfigError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle, dump_vehicle, load_vehicle
@@ -96,7 +97,7 @@ def navigate(
     feed = Feed(bag, wanted, setup.vehicle, setup.period, stamps)
     track = None if wanted.reference is None else read_track(bag, wanted.reference, stamps == LOG)
     start = None if bag.is_ours else _start(feed, wanted, setup, track)
-    estimation = Estimation(setup.vehicle, setup.config, setup.period, start)
+    estimation = _estimation(bag, wanted, setup, start)
     folder = Path(output) if output is not None else _beside(bag.path)
     estimates = _record(folder, bag, setup, feed, estimation)
     if not estimates:
@@ -140,6 +141,16 @@ def _start(feed: Feed, wanted: TopicMap, setup: Setup, track: Track | None) -> O
     twist = np.diag([LOST_SPEED_M_S] * 3 + [1.0] * 3) ** 2
     level = np.array([0.0, 0.0, 0.0, 1.0])
     return Odometry(stamp, begin, level, np.zeros(6), pose, twist)
+
+
+def _estimation(bag: Bag, wanted: TopicMap, setup: Setup, start: Odometry | None) -> Estimation:
+    """The filter, or NavigateError with what it lacks."""
+    try:
+        return Estimation(setup.vehicle, setup.config, setup.period, start)
+    except ConfigError as fault:
+        raise NavigateError(
+            "; ".join([f"log {bag.path}: {fault}", *wanted.left_out.values()])
+        ) from fault
 
 
 def _record(

@@ -32,11 +32,13 @@ class TopicMap:
         sensors: topic of each sensor that the log has, by the sensor's name.
         reference: topic of the reference; None without one.
         notes: what was guessed, and what was left out.
+        left_out: why there is no topic for a sensor, by its name.
     """
 
     sensors: dict[str, str] = field(default_factory=dict)
     reference: str | None = None
     notes: list[str] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)
 
 
 def given_topics(words: Sequence[str]) -> dict[str, str]:
@@ -127,7 +129,8 @@ def _guess(
         found.notes.append(f"{key}: {fits[0]}, the only {topic.type}{_left(bag, topic.type)}")
         return fits[0]
     if key != INERTIAL.name and not bag.is_ours:
-        found.notes.append(f"{key}: left out, since {_why_none(bag, sensor, fits, rivals)}")
+        found.left_out[key] = f"{key}: left out, since {_why_none(bag, sensor, fits, rivals)}"
+        found.notes.append(found.left_out[key])
     return None
 
 
