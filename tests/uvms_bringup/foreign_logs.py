@@ -5,6 +5,7 @@ Nothing of the project's own conversions is used: axes, frames and the ellipsoid
 
 from collections import defaultdict
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -25,27 +26,8 @@ IMU, TWIST = "sensor_msgs/msg/Imu", "geometry_msgs/msg/TwistWithCovarianceStampe
 PRESSURE, FIX = "sensor_msgs/msg/FluidPressure", "sensor_msgs/msg/NavSatFix"
 POSE, ODOMETRY = "geometry_msgs/msg/PoseWithCovarianceStamped", "nav_msgs/msg/Odometry"
 FIELD, MARINE = "sensor_msgs/msg/MagneticField", "marine_acoustic_msgs/msg/Dvl"
-MARINE_FIELDS = """\
-std_msgs/Header header
-uint8 velocity_mode
-uint8 dvl_type
-geometry_msgs/Vector3 velocity
-float64[9] velocity_covar
-float64 altitude
-float64 course_gnd
-float64 speed_gnd
-uint8 num_good_beams
-float32 sound_speed
-bool beam_ranges_valid
-bool beam_velocities_valid
-geometry_msgs/Vector3[4] beam_unit_vec
-float64[4] range
-float32[4] range_covar
-float32[4] beam_quality
-float32[4] beam_velocity
-float32[4] beam_velocity_covar
-"""
-"""Fields of marine_acoustic_msgs/Dvl as they are on the wire; nothing here has it installed."""
+DEFINITION = Path(__file__).parents[1] / "ros/marine_acoustic_msgs/msg/Dvl.msg"
+"""Of a message that is not installed here."""
 
 
 @dataclass(frozen=True)
@@ -89,7 +71,7 @@ def voyage(seconds=16.0):
 def types():
     """Types as a robot with marine_acoustic_msgs has them."""
     store = get_typestore(Stores.ROS2_JAZZY)
-    store.register(get_types_from_msg(MARINE_FIELDS, MARINE))
+    store.register(get_types_from_msg(DEFINITION.read_text(encoding="utf-8"), MARINE))
     return store
 
 
