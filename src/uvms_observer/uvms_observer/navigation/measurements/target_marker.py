@@ -72,6 +72,14 @@ class MarkerPose(Measurement):
         place = np.array(section.target_position_m)
         return with_target(state, place, section.target_quaternion, np.square(std))
 
+    def out_of_reach(self, state: NavigationState) -> str:
+        """As `Measurement.out_of_reach`."""
+        if not is_known(state, self._index):
+            return "not seen yet"
+        seen, attitude, _ = sight(state, self.lever, self._mount, self._index)
+        normal = quat_to_matrix(attitude)[:, 2]
+        return "" if self._section.recognises(seen, normal) else "out of view"
+
     def correct(
         self, state: NavigationState, sample: MarkerSample, rate: Array, gate: float
     ) -> float:
