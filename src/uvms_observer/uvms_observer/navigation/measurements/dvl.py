@@ -64,7 +64,15 @@ class DvlVelocity(Measurement):
                 DVL_SCALE: float(np.square(section.scale_error)),
                 **dict.fromkeys(range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3), float(mounting**2)),
             }
+        self._section, self._seabed = section, vehicle.environment.seabed_depth_m
         self._as_white = as_white(float(np.hypot(section.scale_error, mounting)), section.rate_hz)
+
+    def out_of_reach(self, state: NavigationState) -> str:
+        """As `Measurement.out_of_reach`."""
+        in_water = self._section.lock == WATER_LOCK or self._seabed is None
+        altitude = np.inf if in_water else self._seabed - self.place(state)[2]
+        down = float(quat_to_matrix(state.quaternion)[2, 2])
+        return "" if self._section.reaches(altitude, down) else "no bottom within its range"
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
