@@ -69,7 +69,10 @@ def test_one_is_left_behind_and_the_other_found_where_it_is():
     loop, tick, newest = sailed(FIRST | SURVEYED, SECOND)
     assert newest["target_marker"] < 14e9
     assert newest["marker_ahead"] > 21e9
-    state = loop.parts[topics.NAVIGATION].filter.state
+    navigation = loop.parts[topics.NAVIGATION]
+    assert navigation.trouble() is None
+    assert navigation.status()["out_of_reach"] == "target_marker"
+    state = navigation.filter.state
     found, std = error_of(state, 1, SECOND["target_position_m"])
     assert (np.abs(found) < 3.0 * std).all()
     assert std.max() < 0.03
