@@ -128,14 +128,21 @@ def propagated(
     return mean._replace(covariance=covariance)
 
 
+def conditional(P: Array) -> Array:
+    """Covariance (SIZE, SIZE) of the other states where the DVL's mounting and scale are known."""
+    k = [DVL_SCALE, *range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3)]
+    known = P - P[:, k] @ np.linalg.inv(P[np.ix_(k, k)]) @ P[k]
+    known[k], known[:, k] = 0.0, 0.0
+    return known
+
+
 def corrected(
     state: NavigationState, H: Array, residual: Array, N: Array, is_fix: bool
 ) -> NavigationState:
     """State and covariance after one measurement, Joseph form; only fixes tell of the mounting."""
     P = state.covariance
-    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + N)
-    if not is_fix:
-        K[DVL_SCALE], K[DVL_MISALIGNMENT : DVL_MISALIGNMENT + 3] = 0.0, 0.0
+    known = P if is_fix else conditional(P)
+    K = known @ H.T @ np.linalg.inv(H @ known @ H.T + N)
     left = np.eye(SIZE) - K @ H
     covariance = left @ P @ left.T + K @ N @ K.T
     return plus(state, K @ residual)._replace(covariance=covariance)

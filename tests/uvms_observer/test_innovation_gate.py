@@ -88,7 +88,7 @@ def test_one_that_jumped_does_not_come_back_because_the_estimate_is_uncertain():
 def test_it_comes_back_by_a_jump_within_some_samples():
     gate = gate_of(1, 0.9999)
     tally = excluded(gate, 20.0)
-    tally, taken = judge(gate, tally, 10 * SECOND, 4.5)  # back, though not near enough by chance
+    tally, taken = judge(gate, tally, 10 * SECOND, 7.5)  # back, though not near enough by chance
     assert not taken
     assert tally.away.chances == CHANCES
     tally, taken = judge(gate, tally, 11 * SECOND, 1.0)

@@ -23,6 +23,9 @@ from uvms_observer.navigation.state import (
 )
 from uvms_observer.navigation.target import correct_target
 
+TINY = 1e-18
+"""Added to the variances of scale and misalignment (rad^2), which may be 0."""
+
 
 @exact_kernel
 def correct(
@@ -41,8 +44,9 @@ def correct(
         N: (m, m) covariance of the measurement's noise.
         gate: largest d^2 that is accepted.
         is_fix: whether a position is measured, which tells scale and misalignment of the DVL. Other
-            samples leave those as they are, and the covariance accounts for their not being known
-            (Schmidt's filter): through accelerations they are known worse than from mounting.
+            samples leave those as they are and are weighed as if they were known, and the
+            covariance accounts for their not being so (as in Schmidt's filter): through
+            accelerations they are known worse than from mounting.
 
     Returns:
         d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed but
@@ -55,9 +59,11 @@ def correct(
     distance = _squared(residual, weights)
     if not distance <= gate:
         return distance
-    gain = product(weights, HP)
-    if not is_fix:
-        _consider(gain)
+    if is_fix:
+        gain = product(weights, HP)
+    else:
+        known = _of_known_mounting(state.covariance, HP)
+        gain = product(inverse(covariance_of(known, H, N)), known)
     correct_target(state, H, gain, N, residual)
     _correct_covariance(state.covariance, gain, H, HP, N)
     add_error(state, _weighted(residual, gain))
@@ -117,12 +123,34 @@ def keep_innovation(innovation: Array, residual: Array, N: Array, S: Array) -> N
 
 
 @exact_inner
-def _consider(gain: Array) -> None:
-    """Leave scale and misalignment of the DVL as they are, in place of the gain (m, SIZE)."""
-    for row in range(gain.shape[0]):
-        gain[row, DVL_SCALE] = 0.0
-        for k in range(3):
-            gain[row, DVL_MISALIGNMENT + k] = 0.0
+def _place(i: int) -> int:
+    """In the error state, of the DVL's scale and misalignment."""
+    return DVL_SCALE if i == 0 else DVL_MISALIGNMENT + i - 1
+
+
+@exact_inner
+def _of_known_mounting(P: Array, HP: Array) -> Array:
+    """H P (m, SIZE) by the covariance of all else, given the DVL's scale and misalignment k.
+
+    P_x - P_xk P_kk^-1 P_kx; those themselves are left as they are.
+    """
+    within = np.empty((4, 4))
+    for i in range(4):
+        for j in range(4):
+            within[i, j] = P[_place(i), _place(j)]
+        within[i, i] += TINY
+    weights, known = inverse(within), HP.copy()
+    for row in range(HP.shape[0]):
+        for i in range(4):
+            told = 0.0
+            for k in range(4):
+                told += weights[i, k] * HP[row, _place(k)]
+            if told != 0.0:
+                for j in range(SIZE):
+                    known[row, j] -= told * P[_place(i), j]
+        for i in range(4):
+            known[row, _place(i)] = 0.0
+    return known
 
 
 @exact_inner

@@ -293,9 +293,10 @@ class Estimator:
         P[INERTIAL_BIASES, INERTIAL_BIASES] += times**2 * np.diag(self._imu.faulty_bias_variance)
 
     def doubt_velocity(self) -> None:
-        """Take the velocity to be unknown now."""
+        """Take the velocity to be unknown now: no sensor has jumped, the estimate was wrong."""
         P = self.state.covariance
         P[VELOCITY, VELOCITY] += np.eye(3) * LOST_SPEED_M_S**2
+        self._forget_jumps(self.tallies)
 
     def doubt_place(self) -> None:
         """Take position and velocity to be unknown now."""
@@ -341,5 +342,8 @@ class Estimator:
         """
         away = [name for name, tally in self.tallies.items() if tally.away is not None]
         if len(away) > 1 or stamp - self._unusual < SETTLED:
-            for name in away:
-                self.tallies[name] = self.tallies[name]._replace(away=None)
+            self._forget_jumps(away)
+
+    def _forget_jumps(self, names: Iterable[str]) -> None:
+        """Let these sensors come back where they agree, without a jump back."""
+        self.tallies |= {name: self.tallies[name]._replace(away=None) for name in names}
