@@ -10,6 +10,22 @@ from uvms_bringup.viewer.meshes import unit_mesh
 from uvms_core.signals import Array
 
 NO_LINE = np.zeros((1, 2, 3))
+SKY, DEEP = (255, 255, 255), (150, 165, 175)
+"""Colours of the light from above and from below."""
+UP = (0.0, 0.0, -1.0)
+BRIGHT = 1.6
+"""Strength of it, beside viser's own lamp."""
+
+
+def light(scene: viser.SceneApi) -> None:
+    """Light a scene cheaply: shadows and mirrored surroundings would cost a computer without a
+    graphics card three quarters of its frames, and say nothing.
+    """
+    scene.configure_default_lights(True, cast_shadow=False)
+    scene.configure_environment_map(None)
+    scene.add_light_hemisphere(
+        "/light", sky_color=SKY, ground_color=DEEP, intensity=BRIGHT, position=UP
+    )
 
 
 class Drawing:

@@ -11,7 +11,7 @@ import viser
 
 from uvms_bringup.errors import ViewError
 from uvms_bringup.viewer.cameras import WIDE, view_of
-from uvms_bringup.viewer.drawing import Drawing
+from uvms_bringup.viewer.drawing import Drawing, light
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.scene_model import SceneModel
 
@@ -51,6 +51,7 @@ def _recorded(source: LogSource, times: np.ndarray) -> str:
     model = SceneModel(source.setting)
     with scene_server() as server:
         places = model.all_places(source.moment(float(times[0])))
+        light(server.scene)
         drawing = Drawing(server.scene, model.nodes)
         drawing.show(places)
         view = view_of(WIDE, model, places)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 import viser
 
 from uvms_bringup.viewer.cameras import FREE, PRESETS, WIDE, view_of
-from uvms_bringup.viewer.drawing import Drawing
+from uvms_bringup.viewer.drawing import Drawing, light
 from uvms_bringup.viewer.elements import Places
 from uvms_bringup.viewer.export import quiet_server, stop_quietly
 from uvms_bringup.viewer.log_source import LogSource
@@ -40,6 +40,7 @@ class Page:
         self.server = quiet_server(host, port, title)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False)
         self.places: Places = model.all_places(first)
+        light(self.server.scene)
         self.drawing = Drawing(self.server.scene, model.nodes)
         self.drawing.show(self.places)
         self._presets: dict[int, str] = {}
