@@ -62,12 +62,12 @@ class LivePage(Page):
         model = SceneModel(_setting(graph, first))
         super().__init__(model, first, host, port, "UVMS: live")
         self.graph = graph
-        self._ghost = VehicleBody(graph.vehicle, PLANNED, 0.3, extras=False)
+        self._ghost = VehicleBody(graph.vehicle, PLANNED, 0.3, lights=False)
         width = np.full(3, 2.0 * LINE * model.size)
         line = Node(LINE_NAME, Look("line", GREEN), Place(size=width, visible=False))
         self._width = width
         nodes = {node.name: node for node in (*self._ghost.nodes, line)}
-        self._plan = Drawing(self.server.scene, nodes)
+        self._plan = Drawing(self.server.scene, nodes, self._ghost.still)
         self._plan.show({PLANNED: Place(visible=False)})
         self.preview: Preview | None = None
         self._goal: PathGoal | None = None
@@ -119,6 +119,11 @@ class LivePage(Page):
         R = pose[1] if self._turns.value else np.eye(3)
         self._gizmo.position = pose[0]
         self._gizmo.wxyz = np.roll(matrix_to_quat(R), 1)
+
+    @property
+    def is_preview_shown(self) -> bool:
+        """Whether the page shows a planned way."""
+        return self._plan.is_visible(LINE_NAME)
 
     def _say(self, time: float) -> None:
         """What the time is, and how the goal stands."""
