@@ -3,14 +3,13 @@
 import os
 import subprocess
 import sys
-import threading
-from contextlib import contextmanager
 from dataclasses import dataclass
 
 import numpy as np
 import pytest
 from browser import Tab, browser_tab
 from live import one_domain, running
+from viewed import served
 
 from uvms_bringup.ros.live_source import LiveSource
 from uvms_bringup.viewer.elements import is_shown, world_pose
@@ -74,20 +73,6 @@ class Stage:
 
     def wait(self, condition, what):
         return self.tab.wait(condition, what)
-
-
-@contextmanager
-def served(page):
-    """The page at work in a thread."""
-    ended = threading.Event()
-    thread = threading.Thread(target=page.serve, args=(ended.is_set,))
-    thread.start()
-    try:
-        yield page
-    finally:
-        ended.set()
-        thread.join()
-        page.close()
 
 
 @pytest.fixture(scope="module")

@@ -1,12 +1,10 @@
 """The page of a run in a headless browser, the shared file, pictures and movies."""
 
-import threading
-
 import numpy as np
 import pytest
 from browser import browser_tab
 from PIL import Image
-from viewed import short_run
+from viewed import served, short_run
 
 from uvms_bringup.cli import main
 from uvms_bringup.errors import ViewError
@@ -44,18 +42,8 @@ def yellow(image):
     return (red - blue > 60) & (green - blue > 30) & (red >= green)
 
 
-def served(page):
-    """The page in a thread; the event ends it."""
-    ended = threading.Event()
-    thread = threading.Thread(target=page.serve, args=(ended.is_set,))
-    thread.start()
-    return ended, thread
-
-
 def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab):
-    page = LogPage(source, port=0)
-    ended, thread = served(page)
-    try:
+    with served(LogPage(source, port=0)) as page:
         tab.open(page.address)
         tab.wait_for_text("UVMS: manipulation")
         (first,) = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
@@ -69,10 +57,6 @@ def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab
         tab.press("Play")
         tab.wait_for_text("8.00 s of 8 s")
         assert tab.complaints == []
-    finally:
-        ended.set()
-        thread.join()
-        page.close()
 
 
 def _scene_changed(first, now):

@@ -1,5 +1,8 @@
 """Short runs to look at, with everything that a scene can show."""
 
+import threading
+from contextlib import contextmanager
+
 from uvms_bringup.cli import main
 
 ROCK = "{name: rock, sphere: {center_m: [4.0, 1.0, 11.0], radius_m: 0.6}}"
@@ -21,3 +24,17 @@ def short_run(folder, duration=8.0):
                  *sets])  # fmt: skip
     assert code in (0, 1)  # the path takes longer than the run
     return folder
+
+
+@contextmanager
+def served(page):
+    """A page at work in a thread, until it is closed."""
+    ended = threading.Event()
+    thread = threading.Thread(target=page.serve, args=(ended.is_set,))
+    thread.start()
+    try:
+        yield page
+    finally:
+        ended.set()
+        thread.join()
+        page.close()
