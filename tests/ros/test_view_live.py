@@ -111,6 +111,8 @@ def test_the_page_shows_what_the_graph_does_and_what_its_planner_knows(stage):
     stage.tab.wait_for_text(f"{int(time + 0.5 + later)}.")
     assert is_shown("estimated", page.places)
     assert is_shown("true", page.places)
+    assert stage.graph.moment().current == pytest.approx([-0.08, 0.06, 0.0])
+    assert is_shown("current", page.places)
     assert stage.tab.complaints == []
 
 

@@ -54,6 +54,16 @@ def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab
         assert np.linalg.norm(page.drawing.position_of("estimated/link_1") - before) > 1e-4
         expected = source.moment(7.5).estimated.position
         assert np.abs(page.drawing.position_of("estimated") - expected).max() < 1e-6
+        page.player.jump(1.0)
+        page.player.speed = 0.25
+        tab.press("Play")
+        tab.wait_for_text("Pause")
+        tab.press("Pause")
+        tab.wait_for_text("Play")
+        assert not page.player.playing
+        assert 1.0 < page.player.time < 8.0
+        page.player.jump(7.0)
+        page.player.speed = 1.0
         tab.press("Play")
         tab.wait_for_text("8.00 s of 8 s")
         assert tab.complaints == []
@@ -80,6 +90,11 @@ def test_the_shared_file_opens_without_server_and_network(source, tab, tmp_path)
     tab.offline()
     tab.open(file.as_uri())
     tab.wait(lambda: yellow(tab.picture()).sum() > MANY, "a vehicle in the picture")
+    place = "parseFloat(document.querySelector('#plots .now').style.left)"
+    early = tab.evaluate(place)
+    tab.wait(lambda: tab.evaluate(place) != early, "the mark in the plots to go with the time")
+    titles = tab.evaluate("[...document.querySelectorAll('#plots b')].map(e => e.innerText)")
+    assert [title.split(",")[0] for title in titles] == [p.title for p in source.overview.plots()]
     assert tab.complaints == []
 
 

@@ -4,6 +4,7 @@ import json
 import sys
 import tempfile
 from pathlib import Path
+from typing import Any
 
 from gallery import GALLERY, MOVIE, MOVIE_SPEED, Shot
 
@@ -31,9 +32,15 @@ def draw(shot: Shot, folder: Path) -> None:
     model, moment = SceneModel(source.setting), source.moment(shot.at_s)
     picture = FIGURES / f"view_{shot.name}.png"
     print(write_picture(model, moment, picture, shot.camera, source.name), file=sys.stderr)
-    told = {"arguments": shot.arguments, **describe(model, moment, shot.camera)}
-    lines = json.dumps(told, indent=0).replace("\n", " ").replace("], ", "],\n")
-    picture.with_suffix(".json").write_text(lines + "\n")
+    told = describe(model, moment, shot.camera)
+    picture.with_suffix(".json").write_text(_lines({"arguments": shot.arguments, **told}))
+
+
+def _lines(told: dict[str, Any]) -> str:
+    """JSON with one thing of the picture a line, so that a change of it is one, too."""
+    things = ",\n  ".join(f"{json.dumps(k)}: {json.dumps(v)}" for k, v in told["shown"].items())
+    rest = "".join(f" {json.dumps(k)}: {json.dumps(v)},\n" for k, v in told.items() if k != "shown")
+    return f'{{\n{rest} "shown": {{\n  {things}\n }}\n}}\n'
 
 
 def film(folder: Path) -> None:

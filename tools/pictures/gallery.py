@@ -38,8 +38,8 @@ GALLERY = (
     Shot("obstacles", "hover", 8.0, 8.0, "wide", (ROCKS, SEABED)),
     Shot("push", "hover", 12.0, 10.0, "chase", (PUSH, TETHER)),
     Shot("marker", "manipulation_marker", 8.0, 8.0, "wide"),
-    Shot("payload", "grasp", 14.0, 14.0, "tool"),
+    Shot("path", "manipulation", 60.0, 60.0, "tool"),
     Shot("bluerov2", "hover", 6.0, 6.0, "wide", (), "bluerov2_alpha5"),
 )
-MOVIE = Shot("swing", "arm_swing", 30.0, 0.0, "wide")
-MOVIE_SPEED = 3.0
+MOVIE = Shot("swing", "arm_swing", 52.0, 0.0, "wide")
+MOVIE_SPEED = 5.2

@@ -14,10 +14,11 @@ from rclpy.node import Node
 from rclpy.signals import SignalHandlerOptions
 
 from uvms_bringup.errors import ViewError
-from uvms_bringup.ros.planner_parameters import VEHICLE_FILE, planner_parameters
+from uvms_bringup.ros.asked_parameters import parameters_of
 from uvms_bringup.viewer.log_source import WANTED, forces_of, plan_of, posture_of, thrusts_of
 from uvms_bringup.viewer.moment import Moment, Thrusts, tool_pose
 from uvms_bringup.viewer.overview import TURN_RATE
+from uvms_bringup.viewer.water import current_by
 from uvms_core import diagnostics, topics
 from uvms_core.cdr import codec
 from uvms_core.errors import UvmsError
@@ -28,12 +29,14 @@ from uvms_core.ros.subscribe import qos_profile
 from uvms_core.signals import Array, PathGoal, ToolTarget, to_nanoseconds, to_seconds
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle, load_vehicle
+from uvms_dynamics.simulation.plant.config import PlantConfig
 from uvms_planner.config import PlannerConfig
 
 PATIENCE_S = 30.0
 """Wall time within which the graph must answer."""
 OPTIONAL_S = 2.0
-"""The same for a planner that may not be there, since the user names the vehicle."""
+"""The same for nodes that may not be there: a plant; a planner, if the vehicle is named."""
+VEHICLE_FILE = "vehicle_file"
 STATE = topics.ODOMETRY, topics.TRUE_ODOMETRY, topics.JOINT_STATES, topics.TRUE_JOINT_STATES
 """The newest of these says how late it is: references are stamped ahead, and targets may have the
 clock of whoever leads."""
@@ -76,6 +79,7 @@ class LiveSource:
             given = self._planner_parameters(vehicle_file is not None)
             self.planner = config_of(PlannerConfig, given, "parameters of the motion planner")
             self.vehicle: Vehicle = load_vehicle(vehicle_file or given.get(VEHICLE_FILE) or None)
+            self._current = self._ask_plant()
         except BaseException:
             self.close()
             raise
@@ -138,6 +142,7 @@ class LiveSource:
             plan=plan,
             target=None if plan is None else plan[0],
             trail=np.array(self._trail) if len(self._trail) > 1 else None,
+            current=None if self._current is None else self._current(now),
         )
 
     def send(self, goal: PathGoal) -> None:
@@ -230,13 +235,21 @@ class LiveSource:
 
     def _planner_parameters(self, is_optional: bool) -> dict[str, Any]:
         """Of the graph's planner; empty where there is none and none is needed."""
-        given = planner_parameters(self._node, OPTIONAL_S if is_optional else PATIENCE_S)
+        patience = OPTIONAL_S if is_optional else PATIENCE_S
+        given = parameters_of(self._node, topics.MOTION_PLANNER, patience)
         if given is None and not is_optional:
             raise ViewError(
                 f"waited {PATIENCE_S:g} s for a motion_planner to answer: is `uvms run` going, with"
                 " the same ROS_DOMAIN_ID? Without one, name the vehicle with --vehicle"
             )
         return given or {}
+
+    def _ask_plant(self) -> Callable[[float], Array] | None:
+        """The current by the plant's configuration; None where there is no plant of ours."""
+        given = parameters_of(self._node, topics.PLANT, OPTIONAL_S)
+        if given is None:
+            return None
+        return current_by(config_of(PlantConfig, given, "parameters of the plant"), self.vehicle)
 
 
 def _within(ready: Callable[[], bool], what: str) -> None:

@@ -10,29 +10,30 @@ from uvms_bringup.viewer.moment import Moment
 from uvms_bringup.viewer.scene_model import SceneModel
 from uvms_core.signals import Array
 
-DEEPEST = 1
-"""Slashes in the name of a node that is described: the parts of its parts move with it."""
+DEEPEST = 2
+"""Parts of the name of a node that is described: what is deeper moves with it."""
+PUSHES = "thrust_", "force_"
 
 
 def describe(model: SceneModel, moment: Moment, preset: str) -> dict[str, Any]:
     """Camera and what is shown of a moment: by name the shape, its colour, and where it is.
 
-    Places are in map_ned, in m to the millimetre: of a line both ends, of an arrow where it begins.
-    Thrusts and forces, which are noise while a vehicle holds still, are told by their number alone.
+    Places are in map_ned, in m to the millimetre; of a line both ends. Arrows of thrusts and forces
+    are left out: while a vehicle holds still they are noise.
     """
     places = model.all_places(moment)
     view = view_of(preset, model, places)
     shown = {name: node for name, node in model.nodes.items() if _is_told(node, places)}
-    arrows = [name for name in shown if "/thrust_" in name or "/force_" in name]
     return {
         "camera": [_rounded(view.position), _rounded(view.look_at)],
-        "arrows": len([name for name in model.nodes if "/thrust_" in name or "/force_" in name]),
-        "shown": {name: _told(node, places) for name, node in shown.items() if name not in arrows},
+        "shown": {name: _told(node, places) for name, node in shown.items()},
     }
 
 
 def _is_told(node: Node, places: Places) -> bool:
-    return node.look is not None and node.name.count("/") <= DEEPEST and is_shown(node.name, places)
+    parts = node.name.split("/")
+    is_part = node.look is not None and len(parts) <= DEEPEST
+    return is_part and not parts[-1].startswith(PUSHES) and is_shown(node.name, places)
 
 
 def _told(node: Node, places: Places) -> list[Any]:

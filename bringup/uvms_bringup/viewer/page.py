@@ -119,7 +119,7 @@ class LogPage(Page):
         super().__init__(SceneModel(source.setting), first, host, port, f"UVMS: {source.name}")
         self.source = source
         self.player = Player(source.start_s, source.end_s, source.start_s)
-        self._drawn, self._told = source.start_s, 0.0
+        self._drawn, self._told = (source.start_s, False), 0.0
         self._add_time_line()
         self.add_cameras()
         self.add_switches()
@@ -139,10 +139,10 @@ class LogPage(Page):
     def step(self, elapsed: float) -> None:
         """Let wall time pass, s, and draw what has changed."""
         self.player.advance(elapsed)
-        if self.player.time == self._drawn:
+        if (state := (self.player.time, self.player.playing)) == self._drawn:
             return
-        self._drawn = time = self.player.time
-        moment = self.source.moment(time)
+        self._drawn = state
+        moment = self.source.moment(self.player.time)
         self.show(moment)
         now = clock.monotonic()
         if now - self._told > TOLD_S or not self.player.playing:

@@ -57,6 +57,9 @@ class SceneModel:
         self.estimated = VehicleBody(vehicle, ESTIMATED)
         self.true = VehicleBody(vehicle, TRUE, GHOST, lights=False)
         self.size = 2.0 * float(self.estimated.size[1].max())
+        """Greatest length of the hull, m."""
+        self.diagonal = 2.0 * float(np.linalg.norm(self.estimated.size[1]))
+        """Of the box around the hull, m."""
         self._views = SensorViews(vehicle, ESTIMATED, self.size)
         greatest = max((item.greatest_n for item in vehicle.thrusters), default=1.0)
         scale = greatest if setting.force_scale_n is None else setting.force_scale_n

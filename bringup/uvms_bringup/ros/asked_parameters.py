@@ -1,4 +1,4 @@
-"""What the motion planner of a running graph has been given: its vehicle file, its settings."""
+"""What a node of a running graph has been given: its parameters."""
 
 import time
 from functools import partial
@@ -9,10 +9,8 @@ from rcl_interfaces.srv import GetParameters, GetParameterTypes, ListParameters
 from rclpy.node import Node
 from rclpy.parameter import parameter_value_to_python
 
-from uvms_core import topics
 from uvms_core.ros.request import Request
 
-VEHICLE_FILE = "vehicle_file"
 NOT_SET = ParameterType.PARAMETER_NOT_SET
 SERVICES = {
     ListParameters: "list_parameters",
@@ -22,14 +20,15 @@ SERVICES = {
 """What each request is called at a node."""
 
 
-def planner_parameters(node: Node, patience_s: float) -> dict[str, Any] | None:
-    """The planner's parameters by name, without those that are not set.
+def parameters_of(node: Node, role: str, patience_s: float) -> dict[str, Any] | None:
+    """The parameters of another node by name, without those that are not set.
 
     Args:
         node: that asks; somebody else must be spinning it.
-        patience_s: wall time after which there is no planner, and the answer is None, in s.
+        role: name of the node that is asked.
+        patience_s: wall time after which there is no such node, and the answer is None, in s.
     """
-    ask = partial(_answer, node, time.monotonic() + patience_s)
+    ask = partial(_answer, node, role, time.monotonic() + patience_s)
     if (listed := ask(ListParameters)) is None:
         return None
     names = list(listed.result.names)
@@ -43,9 +42,9 @@ def planner_parameters(node: Node, patience_s: float) -> dict[str, Any] | None:
     return dict(zip(names, values, strict=True))
 
 
-def _answer(node: Node, until: float, kind: Any, **question: Any) -> Any:
-    """The planner's answer to a request; None where there is none in time."""
-    client = node.create_client(kind, f"{topics.MOTION_PLANNER}/{SERVICES[kind]}")
+def _answer(node: Node, role: str, until: float, kind: Any, **question: Any) -> Any:
+    """The answer to a request; None where there is none in time."""
+    client = node.create_client(kind, f"{role}/{SERVICES[kind]}")
     request = Request(lambda: client.call_async(kind.Request(**question)), client.service_is_ready)
     while (answer := request.answer()) is None and time.monotonic() < until:
         time.sleep(0.05)
