@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from browser import Tab, browser_tab
 from live import one_domain, running
-from viewed import served
+from viewed import pixel_of, served
 
 from uvms_bringup.ros.live_source import LiveSource
 from uvms_bringup.viewer.elements import is_shown, world_pose
@@ -39,16 +39,7 @@ class Stage:
 
     def pixel(self, point):
         """Where the browser shows a point (3,) of map_ned."""
-        (client,) = self.page.server.get_clients().values()
-        eye, camera = client.camera.position, client.camera
-        ahead = camera.look_at - eye
-        ahead = ahead / np.linalg.norm(ahead)
-        right = np.cross(ahead, [0.0, 0.0, -1.0])
-        right = right / np.linalg.norm(right)
-        to = np.asarray(point) - eye
-        focal = 0.5 * SIZE[1] / np.tan(0.5 * camera.fov)
-        x, y = to @ right, to @ np.cross(ahead, right)
-        return 0.5 * np.array(SIZE) + focal * np.array([x, y]) / (to @ ahead)
+        return pixel_of(self.page, SIZE, point)
 
     def drag_arrow(self, axis, by):
         """Drag one of the three arrows at the tool by so many m along it, with the mouse."""

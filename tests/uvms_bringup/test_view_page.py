@@ -4,10 +4,11 @@ import numpy as np
 import pytest
 from browser import browser_tab
 from PIL import Image
-from viewed import served, short_run
+from viewed import pixel_of, served, short_run
 
 from uvms_bringup.cli import main
 from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.elements import world_pose
 from uvms_bringup.viewer.export import export, frame_times
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.movie import write_movie
@@ -16,6 +17,8 @@ from uvms_bringup.viewer.picture import picture
 from uvms_bringup.viewer.scene_model import SceneModel
 
 HULL = np.array([0.96, 0.74, 0.16])
+SIZE = (1280, 720)
+"""Of the browser's window."""
 MANY = 300
 """Pixels that a vehicle in view has at the least."""
 
@@ -42,11 +45,21 @@ def yellow(image):
     return (red - blue > 60) & (green - blue > 30) & (red >= green)
 
 
+def green(image):
+    """Where the picture of the page shows the starboard light, outside its panels."""
+    red, green, blue = (image[60:430, 320:930, n].astype(int) for n in range(3))
+    found = np.zeros(image.shape[:2], dtype=bool)
+    found[60:430, 320:930] = (green - red > 90) & (green - blue > 60)
+    return found
+
+
 def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab):
     with served(LogPage(source, port=0)) as page:
         tab.open(page.address)
         tab.wait_for_text("UVMS: manipulation")
         (first,) = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
+        light = pixel_of(page, SIZE, world_pose("estimated/light_starboard", page.places)[0])
+        assert np.linalg.norm(np.argwhere(green(first)).mean(axis=0)[::-1] - light) < 10.0
         before = page.drawing.position_of("estimated/link_1").copy()
         page.player.jump(7.5)
         tab.wait_for_text("7.50 s of 8 s")
