@@ -4,6 +4,7 @@ import sys
 import tempfile
 import time
 from collections.abc import Callable, Iterator
+from contextlib import redirect_stdout
 from pathlib import Path
 from typing import Any
 
@@ -44,7 +45,9 @@ def measure(full: bool) -> Iterator[Metric]:
     """
     with tempfile.TemporaryDirectory(ignore_cleanup_errors=True) as folder:
         run = Path(folder) / "run"
-        if main(["simulate", "manipulation", "--output", str(run), "--json"]) not in (0, 1):
+        with redirect_stdout(sys.stderr):
+            code = main(["simulate", "manipulation", "--output", str(run)])
+        if code != 0:
             raise RuntimeError("the manipulation could not be simulated")
         with browser_tab(Path(folder) / "profile", SIZE) as tab:
             yield from _page(run, tab, LOOPS_FULL if full else LOOPS)
