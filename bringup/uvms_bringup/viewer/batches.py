@@ -1,7 +1,6 @@
 """Parts that never move against one another, as one mesh: a page draws few things fast.
 
-What costs a page is the number of its meshes, not of their triangles: without a graphics card each
-takes about half a millisecond of every frame.
+Without a graphics card the number of meshes is what a frame costs, not that of their triangles.
 """
 
 from collections.abc import Collection
