@@ -11,6 +11,8 @@ from rclpy.parameter import parameter_value_to_python
 
 from uvms_core.ros.request import Request
 
+ANSWER_S = 30.0
+"""Wall time within which a node that is there answers, on a machine with other things to do."""
 NOT_SET = ParameterType.PARAMETER_NOT_SET
 SERVICES = {
     ListParameters: "list_parameters",
@@ -26,7 +28,8 @@ def parameters_of(node: Node, role: str, patience_s: float) -> dict[str, Any] | 
     Args:
         node: that asks; somebody else must be spinning it.
         role: name of the node that is asked.
-        patience_s: wall time after which there is no such node, and the answer is None, in s.
+        patience_s: wall time after which there is no such node, and the answer is None, in s. A
+            node that is there has `ANSWER_S` to answer.
     """
     ask = partial(_answer, node, role, time.monotonic() + patience_s)
     if (listed := ask(ListParameters)) is None:
@@ -45,8 +48,11 @@ def parameters_of(node: Node, role: str, patience_s: float) -> dict[str, Any] | 
 def _answer(node: Node, role: str, until: float, kind: Any, **question: Any) -> Any:
     """The answer to a request; None where there is none in time."""
     client = node.create_client(kind, f"{role}/{SERVICES[kind]}")
+    is_there = False
     request = Request(lambda: client.call_async(kind.Request(**question)), client.service_is_ready)
     while (answer := request.answer()) is None and time.monotonic() < until:
+        if request.times_asked == 1 and not is_there:
+            is_there, until = True, time.monotonic() + ANSWER_S
         time.sleep(0.05)
     node.destroy_client(client)
     return answer

@@ -34,7 +34,7 @@ from uvms_planner.config import PlannerConfig
 
 PATIENCE_S = 30.0
 """Wall time within which the graph must answer."""
-OPTIONAL_S = 2.0
+OPTIONAL_S = 5.0
 """The same for nodes that may not be there: a plant; a planner, if the vehicle is named."""
 VEHICLE_FILE = "vehicle_file"
 STATE = topics.ODOMETRY, topics.TRUE_ODOMETRY, topics.JOINT_STATES, topics.TRUE_JOINT_STATES
