@@ -31,7 +31,7 @@ def parameters_of(node: Node, role: str, patience_s: float) -> dict[str, Any] | 
         patience_s: wall time after which there is no such node, and the answer is None, in s. A
             node that is there has `ANSWER_S` to answer.
     """
-    ask = partial(_answer, node, role, time.monotonic() + patience_s)
+    ask = partial(_answer, node, role, patience_s)
     if (listed := ask(ListParameters)) is None:
         return None
     names = list(listed.result.names)
@@ -45,10 +45,10 @@ def parameters_of(node: Node, role: str, patience_s: float) -> dict[str, Any] | 
     return dict(zip(names, values, strict=True))
 
 
-def _answer(node: Node, role: str, until: float, kind: Any, **question: Any) -> Any:
+def _answer(node: Node, role: str, patience_s: float, kind: Any, **question: Any) -> Any:
     """The answer to a request; None where there is none in time."""
     client = node.create_client(kind, f"{role}/{SERVICES[kind]}")
-    is_there = False
+    until, is_there = time.monotonic() + patience_s, False
     request = Request(lambda: client.call_async(kind.Request(**question)), client.service_is_ready)
     while (answer := request.answer()) is None and time.monotonic() < until:
         if request.times_asked == 1 and not is_there:
