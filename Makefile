@@ -14,10 +14,10 @@ unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-run run test bench field faults docs lint format clean
+.PHONY: help setup setup-run run test bench field faults docs pictures lint format clean
 
 help: ## show this list
-	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-8s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 run: setup-run ## set up, then run the manipulation (other scenario: SCENARIO=hover; options: ARGS="--seed 3")
 	@$(BIN)/uvms run $(SCENARIO) $(ARGS)
@@ -37,6 +37,9 @@ faults: setup ## set up, then run all fault tests, the long ones too, and write 
 docs: setup ## set up, then build the documentation as a static site in site/ (open site/index.html)
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --config-file tools/site/mkdocs.yml
 	@echo "The documentation is in site/index.html"
+
+pictures: setup ## set up, then make the viewer's pictures and movie in docs/figures again
+	@$(BIN)/python tools/pictures
 
 lint: setup ## check style and types
 	@$(BIN)/ruff check $(CODE)

@@ -121,6 +121,24 @@ class Tab:
         for kind in ("mousePressed", "mouseReleased"):
             self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, button="left", clickCount=1)
 
+    def drag(self, start, end, steps=5):
+        """Drag with the left button from one place to another, pixels."""
+        self._mouse("mouseMoved", start)
+        self._mouse("mousePressed", start, button="left", clickCount=1)
+        for place in np.linspace(start, end, steps + 1)[1:]:
+            self._mouse("mouseMoved", place, button="left", buttons=1)
+            self.frame()  # the page acts on what it has drawn
+        self._mouse("mouseReleased", end, button="left", clickCount=1)
+
+    def _mouse(self, kind, place, **more):
+        x, y = map(float, place)
+        self.call("Input.dispatchMouseEvent", type=kind, x=x, y=y, **more)
+
+    def frame(self):
+        """Wait for two frames of the page."""
+        twice = "new Promise(r => requestAnimationFrame(() => requestAnimationFrame(r)))"
+        self.call("Runtime.evaluate", expression=twice, awaitPromise=True)
+
     def press(self, text):
         """Click on the button with this text."""
         place = self.evaluate(

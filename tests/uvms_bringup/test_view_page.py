@@ -1,15 +1,14 @@
 """The page of a run in a headless browser, the shared file, pictures and movies."""
 
-import threading
-
 import numpy as np
 import pytest
 from browser import browser_tab
 from PIL import Image
-from viewed import short_run
+from viewed import pixel_of, served, short_run
 
 from uvms_bringup.cli import main
 from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.elements import world_pose
 from uvms_bringup.viewer.export import export, frame_times
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.movie import write_movie
@@ -18,6 +17,8 @@ from uvms_bringup.viewer.picture import picture
 from uvms_bringup.viewer.scene_model import SceneModel
 
 HULL = np.array([0.96, 0.74, 0.16])
+SIZE = (1280, 720)
+"""Of the browser's window."""
 MANY = 300
 """Pixels that a vehicle in view has at the least."""
 
@@ -44,21 +45,21 @@ def yellow(image):
     return (red - blue > 60) & (green - blue > 30) & (red >= green)
 
 
-def served(page):
-    """The page in a thread; the event ends it."""
-    ended = threading.Event()
-    thread = threading.Thread(target=page.serve, args=(ended.is_set,))
-    thread.start()
-    return ended, thread
+def green(image):
+    """Where the picture of the page shows the starboard light, outside its panels."""
+    red, green, blue = (image[60:430, 320:930, n].astype(int) for n in range(3))
+    found = np.zeros(image.shape[:2], dtype=bool)
+    found[60:430, 320:930] = (green - red > 90) & (green - blue > 60)
+    return found
 
 
 def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab):
-    page = LogPage(source, port=0)
-    ended, thread = served(page)
-    try:
+    with served(LogPage(source, port=0)) as page:
         tab.open(page.address)
         tab.wait_for_text("UVMS: manipulation")
         (first,) = tab.wait(lambda: _settled(tab), "a vehicle in the picture")
+        light = pixel_of(page, SIZE, world_pose("estimated/light_starboard", page.places)[0])
+        assert np.linalg.norm(np.argwhere(green(first)).mean(axis=0)[::-1] - light) < 10.0
         before = page.drawing.position_of("estimated/link_1").copy()
         page.player.jump(7.5)
         tab.wait_for_text("7.50 s of 8 s")
@@ -66,13 +67,19 @@ def test_the_page_loads_shows_the_vehicle_and_moves_it_when_scrubbed(source, tab
         assert np.linalg.norm(page.drawing.position_of("estimated/link_1") - before) > 1e-4
         expected = source.moment(7.5).estimated.position
         assert np.abs(page.drawing.position_of("estimated") - expected).max() < 1e-6
+        page.player.jump(1.0)
+        page.player.speed = 0.25
+        tab.press("Play")
+        tab.wait_for_text("Pause")
+        tab.press("Pause")
+        tab.wait_for_text("Play")
+        assert not page.player.playing
+        assert 1.0 < page.player.time < 8.0
+        page.player.jump(7.0)
+        page.player.speed = 1.0
         tab.press("Play")
         tab.wait_for_text("8.00 s of 8 s")
         assert tab.complaints == []
-    finally:
-        ended.set()
-        thread.join()
-        page.close()
 
 
 def _scene_changed(first, now):
@@ -96,6 +103,11 @@ def test_the_shared_file_opens_without_server_and_network(source, tab, tmp_path)
     tab.offline()
     tab.open(file.as_uri())
     tab.wait(lambda: yellow(tab.picture()).sum() > MANY, "a vehicle in the picture")
+    place = "parseFloat(document.querySelector('#plots .now').style.left)"
+    early = tab.evaluate(place)
+    tab.wait(lambda: tab.evaluate(place) != early, "the mark in the plots to go with the time")
+    titles = tab.evaluate("[...document.querySelectorAll('#plots b')].map(e => e.innerText)")
+    assert [title.split(",")[0] for title in titles] == [p.title for p in source.overview.plots()]
     assert tab.complaints == []
 
 

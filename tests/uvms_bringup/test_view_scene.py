@@ -6,7 +6,10 @@ from viewed import short_run
 
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.log.instants import Instants
+from uvms_bringup.scenario import load_scenario
+from uvms_bringup.viewer.batches import batches
 from uvms_bringup.viewer.cameras import PRESETS, view_of
+from uvms_bringup.viewer.describe import describe
 from uvms_bringup.viewer.elements import Place, is_shown, parent, world_pose
 from uvms_bringup.viewer.log_source import WANTED, LogSource
 from uvms_bringup.viewer.meshes import unit_mesh
@@ -234,3 +237,66 @@ def test_what_is_hidden_takes_its_children_along():
     places = {"a": Place(visible=False), "a/b": Place()}
     assert not is_shown("a/b", places)
     assert is_shown("c", places)
+
+
+def test_beams_end_at_the_seabed_and_follow_the_mounting_of_the_log():
+    own = "vehicle_overrides={environment.seabed_depth_m: 11.5, sensors.dvl.rpy_deg: [0, 10, 0]}"
+    vehicle = load_scenario("hover", (own,)).load_vehicle()
+    model = SceneModel(Setting(vehicle))
+    places = model.all_places(level(vehicle))
+    mount = quat_to_matrix(rpy_to_quat(0.0, np.radians(10.0), 0.0))
+    for number in range(4):
+        centre, R = world_pose(f"estimated/beam_{number}", places)
+        half = places[f"estimated/beam_{number}"].size[2]
+        start, end = centre + half * R[:, 2], centre - half * R[:, 2]  # the cone's tip is at +z
+        assert np.allclose(start, vehicle.sensors.dvl.position_m + np.array([1.0, 2.0, 10.0]))
+        assert end[2] == pytest.approx(11.5)
+        assert (mount.T @ -R[:, 2])[2] == pytest.approx(np.cos(np.radians(30.0)))
+
+
+def test_a_camera_shows_what_it_sees_and_its_marker_lies_where_the_file_says():
+    vehicle = load_scenario("manipulation_marker").load_vehicle()
+    section = vehicle.sensors.mounted["target_marker"]
+    model = SceneModel(Setting(vehicle))
+    places = model.all_places(level(vehicle))
+    points = places["estimated/view_target_marker"].points
+    tip, corners = points[0], points[1:5]
+    assert np.allclose(tip, section.position_m)
+    rays = (corners - tip) @ section.sensor_axes  # x right, y down, z along the view
+    sideways, updown = np.degrees(2.0 * np.arctan(np.abs(rays[:, :2] / rays[:, 2:]))).T
+    assert np.allclose(sideways, section.field_of_view_deg[0])
+    assert np.allclose(updown, section.field_of_view_deg[1])
+    marker = places["marker_target_marker"]
+    assert marker.position.tolist() == [0.95, -0.15, 11.65]
+    assert np.allclose(quat_to_matrix(marker.quaternion)[:, 2], [0.0, 0.0, -1.0])  # faces up
+
+
+def test_what_is_drawn_together_covers_the_same_triangles_and_never_moves(source, model):
+    assert not model.still & model.places(source.moment(5.0)).keys()
+    joined, gone = batches(model.nodes, model.nodes.keys() - model.still)
+    assert gone <= model.still
+    assert len(gone) > 40  # of the two vehicles: fins, ducts, blades
+    places = {name: node.place for name, node in model.nodes.items()}
+    for batch in joined:
+        carrier = parent(batch.name)
+        centre, R = world_pose(carrier, places)
+        corners = centre + batch.vertices @ R.T
+        parts = [name for name in gone if model.nodes[name].look == batch.look
+                 and name.startswith(f"{carrier}/")]  # fmt: skip
+        expected = []
+        for name in parts:
+            where, turn = world_pose(name, places)
+            vertices = unit_mesh(model.nodes[name].look.kind)[0] * places[name].size
+            expected.append(where + vertices @ turn.T)
+        known = {tuple(row) for row in np.round(np.concatenate(expected), 9) + 0.0}
+        assert {tuple(row) for row in np.round(corners, 9) + 0.0} <= known
+        assert batch.faces.max() == len(batch.vertices) - 1
+
+
+def test_a_description_tells_places_and_colours_and_not_the_noise_of_thrusts(source, model):
+    told = describe(model, source.moment(7.5), "wide")["shown"]
+    hull = source.moment(7.5).estimated.position
+    assert told["estimated/hull"][:2] == ["sphere", "#f5bd29"]
+    assert np.abs(np.subtract(told["estimated/hull"][2], hull)).max() < 1e-3
+    assert told["obstacle_rock"][2] == [4.0, 1.0, 11.0]
+    assert not [name for name in told if "thrust_" in name or "force_" in name]

@@ -184,7 +184,6 @@ class GraphRun:
             when = to_seconds(conductor.stamp)
             self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
         conductor.losses.look()
-        self.ending.incidents += conductor.interference()
         if conductor.acknowledgement is not None:
             conductor.acknowledgement.look_after()
         if conductor.recorder.set_back is not None:
@@ -205,6 +204,7 @@ class GraphRun:
         self.ending.goal, self.ending.goals = conductor.agenda.state, conductor.agenda.records()
         if topics.CLOCK.name not in conductor.recorder.newest:
             return
+        self.ending.incidents += conductor.interference()
         self.ending.incidents += conductor.goal_failure()
         silent = conductor.count(spinner)
         self.ending.incidents += [

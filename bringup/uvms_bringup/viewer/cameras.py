@@ -17,7 +17,7 @@ _BACK = {
     TOOL: (0.35, 0.5, -0.25),
     TOP: (-0.001, 0.0, -2.2),
 }
-"""From what it looks at to the camera, in lengths of the hull; chase in the vehicle's heading."""
+"""From what it looks at to the camera, in diagonals of the hull; chase in the vehicle's heading."""
 
 
 @dataclass(frozen=True)
@@ -34,7 +34,7 @@ def view_of(preset: str, model: SceneModel, places: Places) -> View:
     middle = position + R @ model.estimated.size[0]
     tool = world_pose(f"{model.shown_root(places)}/tool", places)[0]
     look_at = {TOOL: tool, CHASE: middle}.get(preset, 0.5 * (middle + tool))
-    back = np.array(_BACK[preset]) * model.size
+    back = np.array(_BACK[preset]) * model.diagonal
     if preset == CHASE:
         yaw = np.arctan2(R[1, 0], R[0, 0])
         c, s = np.cos(yaw), np.sin(yaw)

@@ -1,15 +1,35 @@
 """Draws a scene with viser, and sends what has changed."""
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
 import viser
 
-from uvms_bringup.viewer.elements import Colour, Node, Place, Places
+from uvms_bringup.viewer.batches import batches
+from uvms_bringup.viewer.elements import Colour, Look, Node, Place, Places
 from uvms_bringup.viewer.meshes import unit_mesh
 from uvms_core.signals import Array
 
 NO_LINE = np.zeros((1, 2, 3))
+SKY, DEEP = (255, 255, 255), (150, 165, 175)
+"""Colours of the light from above and from below."""
+UP = (0.0, 0.0, -1.0)
+BRIGHT = 1.6
+"""Strength of it, beside viser's own lamp."""
+
+
+def light(scene: viser.SceneApi) -> None:
+    """Light a scene cheaply.
+
+    Shadows and mirrored surroundings, viser's default, say nothing and are what costs a computer
+    without a graphics card most.
+    """
+    scene.configure_default_lights(True, cast_shadow=False)
+    scene.configure_environment_map(None)
+    scene.add_light_hemisphere(
+        "/light", sky_color=SKY, ground_color=DEEP, intensity=BRIGHT, position=UP
+    )
 
 
 class Drawing:
@@ -18,12 +38,19 @@ class Drawing:
     Args:
         scene: to draw into.
         nodes: by name, parents before their children.
+        still: those whose places never change; they are drawn together where they can be, and
+            cannot be switched off one by one.
     """
 
-    def __init__(self, scene: viser.SceneApi, nodes: dict[str, Node]) -> None:
+    def __init__(
+        self, scene: viser.SceneApi, nodes: dict[str, Node], still: Collection[str] = ()
+    ) -> None:
         self._scene = scene
         scene.set_up_direction("-z")
-        self._handles = {name: self._add(node) for name, node in nodes.items()}
+        joined, gone = batches(nodes, nodes.keys() - still)
+        self._handles = {name: self._add(nodes[name]) for name in nodes if name not in gone}
+        for batch in joined:
+            self._add_mesh(f"/{batch.name}", batch.look, batch.vertices, batch.faces)
         self._shown = {name: node.place for name, node in nodes.items()}
         self._switched_off: set[str] = set()
 
@@ -45,6 +72,10 @@ class Drawing:
         """Where the page has a node, (3,) m in its parent."""
         return np.array(self._handles[name].position)
 
+    def is_visible(self, name: str) -> bool:
+        """Whether the page shows a node, if all that it moves with is shown."""
+        return bool(self._handles[name].visible)
+
     def _add(self, node: Node) -> Any:
         name, place = f"/{node.name}", node.place
         common: dict[str, Any] = {
@@ -54,20 +85,25 @@ class Drawing:
         }
         if node.look is None:
             return self._scene.add_frame(name, show_axes=False, **common)
-        colour = _rgb(node.look.colour)
         if node.look.kind == "line":
+            colour, width = _rgb(node.look.colour), float(place.size[0])
             return self._scene.add_line_segments(
-                name, _segments(place), colour, thickness=float(place.size[0]), **common
+                name, _segments(place), colour, thickness=width, **common
             )
-        vertices, faces = unit_mesh(node.look.kind)
-        opacity = None if node.look.opacity == 1.0 else node.look.opacity
-        handle = self._scene.add_mesh_simple(
-            name, vertices, faces, color=colour, opacity=opacity, scale=_scale(place),
-            cast_shadow=False, receive_shadow=False, **common,
-        )  # fmt: skip
+        shape = unit_mesh(node.look.kind)
+        handle = self._add_mesh(name, node.look, *shape, scale=_scale(place), **common)
         if node.label:
             self._scene.add_label(f"{name}/label", node.label)
         return handle
+
+    def _add_mesh(
+        self, name: str, look: Look, vertices: Array, faces: np.ndarray, **more: Any
+    ) -> viser.MeshHandle:
+        opacity = None if look.opacity == 1.0 else look.opacity
+        return self._scene.add_mesh_simple(
+            name, vertices, faces, color=_rgb(look.colour), opacity=opacity,
+            cast_shadow=False, receive_shadow=False, **more,
+        )  # fmt: skip
 
     def _move(self, name: str, before: Place, now: Place) -> None:
         handle = self._handles[name]

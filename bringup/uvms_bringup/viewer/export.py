@@ -11,9 +11,10 @@ import viser
 
 from uvms_bringup.errors import ViewError
 from uvms_bringup.viewer.cameras import WIDE, view_of
-from uvms_bringup.viewer.drawing import Drawing
+from uvms_bringup.viewer.drawing import Drawing, light
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.scene_model import SceneModel
+from uvms_bringup.viewer.shared_plots import with_plots
 
 FRAMES = 1500
 """At most, evenly over the run: a run of 900 s then takes some 10 MB."""
@@ -34,7 +35,9 @@ def export(source: LogSource, file: str | Path, frames: int = FRAMES) -> Path:
     try:
         path.touch()  # before the work, which takes its time
         times = frame_times(source.start_s, source.end_s, frames)
-        path.write_text(_recorded(source, times), encoding="utf-8")
+        over = source.overview
+        page = with_plots(_recorded(source, times), over.times, over.plots())
+        path.write_text(page, encoding="utf-8")
     except OSError as fault:
         raise ViewError(f"{path}: cannot be written: {fault.strerror}") from fault
     return path
@@ -51,7 +54,8 @@ def _recorded(source: LogSource, times: np.ndarray) -> str:
     model = SceneModel(source.setting)
     with scene_server() as server:
         places = model.all_places(source.moment(float(times[0])))
-        drawing = Drawing(server.scene, model.nodes)
+        light(server.scene)
+        drawing = Drawing(server.scene, model.nodes, model.still)
         drawing.show(places)
         view = view_of(WIDE, model, places)
         server.initial_camera.position = view.position

@@ -14,6 +14,8 @@ from uvms_bringup.viewer.scene_model import SceneModel
 SIZE = (640, 360)
 RATES = {".gif": 10, ".mp4": 25}
 """Frames a second by the file's suffix."""
+PALETTE_FRAMES = 6
+"""From which the colours of a GIF are taken, evenly over it."""
 LONGEST_S = 10.0
 """Of a movie for which no speed is asked: the run is played so much faster."""
 
@@ -39,10 +41,14 @@ def write_movie(
     speed = max((end - start) / LONGEST_S, 1.0) if speed is None else speed
     rate = RATES[path.suffix]
     times = np.arange(start, end, speed / rate)
-    write = _write_gif if path.suffix == ".gif" else _write_mp4
     try:
         path.touch()  # before the work, which takes its time
-        write(path, _frames(source, times, preset), rate)
+        if path.suffix == ".gif":
+            few = times[:: max(len(times) // PALETTE_FRAMES, 1)]
+            palette = _palette(list(_frames(source, few, preset)))
+            _write_gif(path, _frames(source, times, preset), rate, palette)
+        else:
+            _write_mp4(path, _frames(source, times, preset), rate)
     except OSError as fault:
         raise ViewError(f"{path}: cannot be written: {fault}") from fault
     return path
@@ -54,11 +60,19 @@ def _frames(source: LogSource, times: np.ndarray, preset: str) -> Iterator[Image
         yield picture(model, source.moment(float(time)), preset, source.name, SIZE)
 
 
-def _write_gif(path: Path, frames: Iterator[Image.Image], rate: int) -> None:
-    """With the colours of the first frame, so that nothing flickers."""
-    first = next(frames).quantize(128)
-    rest = (frame.quantize(palette=first, dither=Image.Dither.NONE) for frame in frames)
-    first.save(path, save_all=True, append_images=rest, duration=round(1000 / rate), loop=0)
+def _palette(frames: list[Image.Image]) -> Image.Image:
+    """The colours of some frames, which all then share, so that nothing flickers.
+
+    An octree keeps those of small things, such as the side lights.
+    """
+    joined = Image.fromarray(np.vstack([np.asarray(frame) for frame in frames]))
+    return joined.quantize(256, Image.Quantize.FASTOCTREE)
+
+
+def _write_gif(path: Path, frames: Iterator[Image.Image], rate: int, palette: Image.Image) -> None:
+    each = (frame.quantize(palette=palette, dither=Image.Dither.NONE) for frame in frames)
+    first = next(each)
+    first.save(path, save_all=True, append_images=each, duration=round(1000 / rate), loop=0)
 
 
 def _write_mp4(path: Path, frames: Iterator[Image.Image], rate: int) -> None:

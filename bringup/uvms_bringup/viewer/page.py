@@ -6,7 +6,7 @@ from collections.abc import Callable
 import viser
 
 from uvms_bringup.viewer.cameras import FREE, PRESETS, WIDE, view_of
-from uvms_bringup.viewer.drawing import Drawing
+from uvms_bringup.viewer.drawing import Drawing, light
 from uvms_bringup.viewer.elements import Places
 from uvms_bringup.viewer.export import quiet_server, stop_quietly
 from uvms_bringup.viewer.log_source import LogSource
@@ -17,6 +17,10 @@ from uvms_bringup.viewer.scene_model import SceneModel
 
 FRAME_S = 1.0 / 30.0
 """Between two frames of the page."""
+TOLD_S = 0.2
+"""Between two updates of the panels while the run plays: text that changes faster is not read, and
+costs a page more than the scene.
+"""
 HOST = "127.0.0.1"
 """The page is for this machine alone unless the user says otherwise."""
 LAYERS = {
@@ -26,7 +30,7 @@ LAYERS = {
     "travelled path": ("travelled_", "trail"),
     "asked and planned path": ("asked_path", "planned_path", "target"),
     "error of the estimate": ("error_",),
-    "sensor beams": ("estimated/beam_",),
+    "sensor beams and views": ("estimated/beam_", "estimated/view_"),
     "water and tether": ("current", "tether"),
 }
 """Switches of the page, and what the names of their nodes begin with."""
@@ -40,7 +44,8 @@ class Page:
         self.server = quiet_server(host, port, title)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False)
         self.places: Places = model.all_places(first)
-        self.drawing = Drawing(self.server.scene, model.nodes)
+        light(self.server.scene)
+        self.drawing = Drawing(self.server.scene, model.nodes, model.still)
         self.drawing.show(self.places)
         self._presets: dict[int, str] = {}
         view = view_of(WIDE, model, self.places)
@@ -114,7 +119,7 @@ class LogPage(Page):
         super().__init__(SceneModel(source.setting), first, host, port, f"UVMS: {source.name}")
         self.source = source
         self.player = Player(source.start_s, source.end_s, source.start_s)
-        self._drawn = source.start_s
+        self._drawn, self._told = (source.start_s, False), 0.0
         self._add_time_line()
         self.add_cameras()
         self.add_switches()
@@ -134,13 +139,20 @@ class LogPage(Page):
     def step(self, elapsed: float) -> None:
         """Let wall time pass, s, and draw what has changed."""
         self.player.advance(elapsed)
-        if self.player.time == self._drawn:
+        if (state := (self.player.time, self.player.playing)) == self._drawn:
             return
-        self._drawn = time = self.player.time
-        moment = self.source.moment(time)
+        self._drawn = state
+        moment = self.source.moment(self.player.time)
         self.show(moment)
-        self._plots.show(time)
-        self._slider.value = time  # type: ignore[misc]  # viser assigns by __setattr__
+        now = clock.monotonic()
+        if now - self._told > TOLD_S or not self.player.playing:
+            self._told = now
+            self._tell(moment)
+
+    def _tell(self, moment: Moment) -> None:
+        """Bring the panels up to a moment."""
+        self._plots.show(moment.time)
+        self._slider.value = moment.time  # type: ignore[misc]  # viser assigns by __setattr__
         self._play.label = "Pause" if self.player.playing else "Play"
         self._status.content = status_text(self.source, moment)
 

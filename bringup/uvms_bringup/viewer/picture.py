@@ -11,7 +11,7 @@ from uvms_analysis.report.posture import arrow, ball, rod
 from uvms_analysis.report.raycast import Camera, Shape, blend, render, shrink
 from uvms_bringup.errors import ViewError
 from uvms_bringup.viewer.cameras import View, view_of
-from uvms_bringup.viewer.elements import Node, Place, Places, is_shown, world_pose
+from uvms_bringup.viewer.elements import Colour, Node, Place, Places, is_shown, world_pose
 from uvms_bringup.viewer.moment import Moment
 from uvms_bringup.viewer.scene_model import SceneModel
 from uvms_core.signals import Array
@@ -110,7 +110,7 @@ def _shapes(node: Node, places: Places) -> Iterator[Shape]:
     if node.look.kind == "arrow":
         yield from arrow(centre, R[:, 2] * place.size[2], 0.4 * float(place.size[0]), colour)
     elif node.look.kind == "line":
-        yield from _rods(place, colour)
+        yield from _rods(place, centre, R, colour)
     elif place.size.min() > 0.0:
         yield Shape(node.look.kind, centre, R * place.size, colour)
 
@@ -126,8 +126,8 @@ def _spaced(points: Array, step: float) -> list[Array]:
     return kept
 
 
-def _rods(place: Place, colour: tuple[float, float, float]) -> Iterator[Shape]:
-    points: Array = np.empty((0, 3)) if place.points is None else place.points
+def _rods(place: Place, centre: Array, R: Array, colour: Colour) -> Iterator[Shape]:
+    points: Array = np.empty((0, 3)) if place.points is None else centre + place.points @ R.T
     radius = 0.5 * float(place.size[0])
     for first, last in pairwise(_spaced(points, ROD * radius)):
         yield rod(first, last, radius, colour)

@@ -5,6 +5,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from uvms_bringup.viewer.moment import Posture, tool_pose
+from uvms_core.rotations import matrix_to_quat
 from uvms_core.signals import (
     Array,
     JointStates,
@@ -12,6 +13,7 @@ from uvms_core.signals import (
     PathGoal,
     to_nanoseconds,
 )
+from uvms_core.vehicle.frames import Pose
 from uvms_core.vehicle.vehicle import Vehicle
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
@@ -35,13 +37,21 @@ class Preview:
     refusal: str = ""
 
 
-def straight_goal(start: Array, end: Array, speed: float) -> PathGoal:
-    """The tool from rest to rest along a line, at a mean speed in m/s."""
-    seconds = max(float(np.linalg.norm(end - start)) / speed, SHORTEST_S)
+def straight_goal(start: Pose, end: Pose, speed: float, turns: bool = False) -> PathGoal:
+    """The tool from rest to rest along a line, at a mean speed in m/s.
+
+    Args:
+        start: pose of the tool in map_ned.
+        end: where it is to go.
+        speed: m/s.
+        turns: it is to have the end's rotation there; else it turns as it likes.
+    """
+    seconds = max(float(np.linalg.norm(end[0] - start[0])) / speed, SHORTEST_S)
+    turned = [matrix_to_quat(R) for _, R in (start, end)] if turns else np.empty((0, 4))
     return PathGoal(
         np.array([0.0, seconds]),
-        np.array([start, end]),
-        np.empty((0, 4)),
+        np.array([start[0], end[0]]),
+        np.array(turned),
         time_scale_max=SLOWEST,
     )
 
@@ -73,7 +83,7 @@ def preview(
     return Preview(tool, end, (last.end - odometry.stamp) / 1e9)
 
 
-def tool_now(vehicle: Vehicle, odometry: Odometry, joints: JointStates) -> Array:
-    """Where the tool is, (3,) m in map_ned."""
+def tool_now(vehicle: Vehicle, odometry: Odometry, joints: JointStates) -> Pose:
+    """The tool in map_ned."""
     posture = Posture(odometry.position, odometry.quaternion, joints.position)
-    return tool_pose(vehicle, posture)[0]
+    return tool_pose(vehicle, posture)

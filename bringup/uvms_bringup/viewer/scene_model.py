@@ -8,6 +8,7 @@ import numpy as np
 from uvms_bringup.viewer.elements import Node, Places
 from uvms_bringup.viewer.moment import Moment, tool_pose
 from uvms_bringup.viewer.pushes import Pushes
+from uvms_bringup.viewer.sensor_views import SensorViews
 from uvms_bringup.viewer.surroundings import Surroundings
 from uvms_bringup.viewer.tool_paths import ToolPaths
 from uvms_bringup.viewer.uncertainty import error_nodes, error_places
@@ -54,8 +55,12 @@ class SceneModel:
         vehicle = setting.vehicle
         self.vehicle = vehicle
         self.estimated = VehicleBody(vehicle, ESTIMATED)
-        self.true = VehicleBody(vehicle, TRUE, GHOST, extras=False)
+        self.true = VehicleBody(vehicle, TRUE, GHOST, lights=False)
         self.size = 2.0 * float(self.estimated.size[1].max())
+        """Greatest length of the hull, m."""
+        self.diagonal = 2.0 * float(np.linalg.norm(self.estimated.size[1]))
+        """Of the box around the hull, m."""
+        self._views = SensorViews(vehicle, ESTIMATED, self.size)
         greatest = max((item.greatest_n for item in vehicle.thrusters), default=1.0)
         scale = greatest if setting.force_scale_n is None else setting.force_scale_n
         self.pushes = Pushes(vehicle, ESTIMATED, LONGEST * self.size, scale)
@@ -66,17 +71,24 @@ class SceneModel:
                 *self._world.nodes,
                 *self.true.nodes,
                 *self.estimated.nodes,
+                *self._views.nodes,
                 *self.pushes.nodes,
                 *self._paths.nodes,
                 *error_nodes(),
             )
         )
 
+    @property
+    def still(self) -> set[str]:
+        """Nodes of the vehicles that never move in their parents."""
+        return self.estimated.still | self.true.still
+
     def places(self, moment: Moment) -> Places:
         """Where every moving node is; with `all_places` also those that stand still."""
         turned = None if moment.thrusts is None else moment.thrusts.turned
         shown = moment.estimated or moment.true
         found = self.estimated.places(shown, turned)
+        found |= self._views.places(shown)
         found |= self.true.places(moment.true, turned)
         found |= self.pushes.places(moment.thrusts, moment.forces)
         found |= self._world.places(shown, moment.current)

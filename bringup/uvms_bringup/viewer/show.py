@@ -13,7 +13,6 @@ from uvms_bringup.viewer.movie import write_movie
 from uvms_bringup.viewer.page import LogPage
 from uvms_bringup.viewer.picture import write_picture
 from uvms_bringup.viewer.scene_model import SceneModel
-from uvms_planner.config import PlannerConfig
 
 
 def show(options: Namespace) -> int:
@@ -31,7 +30,7 @@ def _show_live(options: Namespace) -> int:
     graph = LiveSource(options.vehicle, options.namespace)
     try:
         graph.wait()
-        _serve(LivePage(graph, PlannerConfig(), options.host, options.port), "live", options)
+        _serve(LivePage(graph, options.host, options.port), "live", options)
     finally:
         graph.close()
     return 0

@@ -7,7 +7,7 @@ import numpy as np
 from uvms_bringup.viewer.elements import HIDDEN, Colour, Look, Node, Place, Places
 from uvms_bringup.viewer.moment import Posture
 from uvms_core.description.tree import basis
-from uvms_core.rotations import matrix_to_quat
+from uvms_core.rotations import matrix_to_quat, rpy_to_quat
 from uvms_core.scene import SEABED, Obstacle
 from uvms_core.signals import Array
 from uvms_core.vehicle.outline import box_outline
@@ -18,6 +18,10 @@ STONE: Colour = (0.55, 0.50, 0.44)
 WATER: Colour = (0.35, 0.65, 0.90)
 ROPE: Colour = (0.95, 0.85, 0.25)
 CURRENT: Colour = (0.10, 0.45, 0.85)
+MARKER: Colour = (0.95, 0.95, 0.95)
+MARKER_HALF_M = np.array([0.075, 0.075, 0.003])
+"""Half sides of the plate that stands for a marker: the vehicle file has no size of it."""
+BEACON_RADIUS_M = 0.08
 SEABED_HALF_M = 25.0
 THICK_M = 0.05
 TETHER, FLOW = "tether", "current"
@@ -42,7 +46,7 @@ class Surroundings:
     ) -> None:
         self._size = size
         self._has_tether = vehicle.tether is not None
-        self.nodes = [*_seabed(vehicle, middle), *map(_obstacle, obstacles)]
+        self.nodes = [*_seabed(vehicle, middle), *map(_obstacle, obstacles), *_marks(vehicle)]
         self.nodes.append(Node(FLOW, Look("arrow", CURRENT), HIDDEN))
         if self._has_tether:
             self.nodes.append(Node(TETHER, Look("line", ROPE), HIDDEN))
@@ -90,3 +94,16 @@ def _obstacle(obstacle: Obstacle) -> Node:
     box = box_outline(obstacle.box)
     place = Place(box.centre, matrix_to_quat(box.rotation), box.half)
     return Node(name, Look("box", STONE), place, obstacle.name)
+
+
+def _marks(vehicle: Vehicle) -> Iterator[Node]:
+    """What the vehicle's sensors look for: markers of cameras, transponders of acoustic fixes."""
+    for name, section in vehicle.sensors.mounted.items():
+        if (centre := getattr(section, "target_position_m", None)) is not None:
+            turn = rpy_to_quat(*np.radians(getattr(section, "target_rpy_deg", np.zeros(3))))
+            place = Place(np.array(centre), turn, MARKER_HALF_M)
+            yield Node(f"marker_{name}", Look("box", MARKER), place, name)
+        elif (source := getattr(section, "source_m", None)) is not None:
+            size = np.full(3, BEACON_RADIUS_M)
+            place = Place(np.array(source), size=size)
+            yield Node(f"marker_{name}", Look("sphere", MARKER), place, name)

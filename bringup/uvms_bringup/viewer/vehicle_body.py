@@ -22,18 +22,11 @@ BLADE: Colour = (0.85, 0.87, 0.90)
 FIN: Colour = (0.80, 0.60, 0.12)
 PORT: Colour = (0.90, 0.05, 0.05)
 STARBOARD: Colour = (0.05, 0.75, 0.15)
-BEAM: Colour = (0.30, 0.75, 0.95)
 TOOL: Colour = (0.10, 0.10, 0.12)
 BLADE_M = (0.9 * THRUSTER_RADIUS_M, 0.15 * THRUSTER_RADIUS_M, 0.06 * THRUSTER_RADIUS_M)
 """Half sides of a propeller's two blades, which lie across its axis."""
 LIGHT = 0.03
 """Radius of the side lights, as a part of the hull's length."""
-BEAM_ANGLE_DEG = 30.0
-"""Of the four beams of a Doppler log from the vertical, as in most of them: the vehicle file does
-not say."""
-BEAM_HALF_WIDTH_DEG = 2.0
-BEAM_LENGTH = 1.5
-"""Length of a beam where no seabed stops it, in lengths of the hull."""
 
 
 class VehicleBody:
@@ -43,11 +36,11 @@ class VehicleBody:
         vehicle: its file.
         root: name of the node.
         opacity: of all its parts; a ghost has less than 1.
-        extras: side lights and beams of the sensors, too.
+        lights: side lights, too.
     """
 
     def __init__(
-        self, vehicle: Vehicle, root: str, opacity: float = 1.0, extras: bool = True
+        self, vehicle: Vehicle, root: str, opacity: float = 1.0, lights: bool = True
     ) -> None:
         self.root = root
         self._vehicle, self._opacity = vehicle, opacity
@@ -56,8 +49,10 @@ class VehicleBody:
         self.tool = f"{root}/tool"
         self.propellers = [f"{root}/thruster_{item.name}/propeller" for item in vehicle.thrusters]
         self.nodes = [Node(root), *self._hull(), *self._thrusters(), *self._arm()]
-        if extras:
-            self.nodes += [*self._lights(), *self._beams()]
+        if lights:
+            self.nodes += self._lights()
+        moving = {root, *self.links, self.tool, *self.propellers}
+        self.still = {node.name for node in self.nodes} - moving
 
     def places(self, posture: Posture | None, turned: Array | None = None) -> Places:
         """Where the moving nodes are; hidden where there is no posture.
@@ -140,23 +135,6 @@ class VehicleBody:
         for name, colour, side in (("port", PORT, -1.0), ("starboard", STARBOARD, 1.0)):
             place = centre + side * np.array([0.0, half[1], 0.0])
             yield self._node(f"light_{name}", "sphere", (place, np.eye(3)), size, colour)
-
-    def _beams(self) -> Iterator[Node]:
-        """The four beams of the Doppler log, where there is one."""
-        section = self._vehicle.sensors.dvl
-        if section is None:
-            return
-        dvl = np.array(section.position_m)
-        length = BEAM_LENGTH * 2.0 * self.size[1][0]
-        tilt = np.radians(BEAM_ANGLE_DEG)
-        for number, azimuth in enumerate(np.radians([45.0, 135.0, 225.0, 315.0])):
-            flat = np.array([np.cos(azimuth), np.sin(azimuth), 0.0])
-            along = np.sin(tilt) * flat + np.array([0.0, 0.0, np.cos(tilt)])
-            radius = length * np.tan(np.radians(BEAM_HALF_WIDTH_DEG))
-            pose = dvl + 0.5 * length * along, basis(-along, 2)
-            size = np.array([radius, radius, 0.5 * length])
-            node = self._node(f"beam_{number}", "cone", pose, size, BEAM)
-            yield Node(node.name, Look("cone", BEAM, 0.25), node.place)
 
 
 def hull_size(vehicle: Vehicle) -> tuple[Array, Array]:

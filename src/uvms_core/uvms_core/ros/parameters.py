@@ -1,7 +1,7 @@
 """ROS parameters from a configuration's fields: name, type, default, bounds, description."""
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from typing import Annotated, Any, TypeVar, get_args, get_origin
 
 import annotated_types
@@ -17,6 +17,8 @@ from uvms_core.plugin import PluginConfig
 from uvms_core.yaml_text import parse_yaml
 
 C = TypeVar("C", bound=Config)
+Lookup = Callable[[str, Any, FieldInfo], Any]
+"""Value of a parameter by its name, the default and the field; None where it is not set."""
 PARAMETERS = "parameters"
 """Field of a section under which stands what only the chosen part knows."""
 UNTYPED: tuple[Any, ...] = ((), None)
@@ -33,12 +35,33 @@ def declare_config(node: Node, model: type[C]) -> C:
         ConfigError: a value is outside its bounds; the message names it and what is allowed.
         PluginError: a part that is chosen cannot be found.
     """
+
+    def declared(name: str, default: Any, field: FieldInfo) -> Any:
+        if not node.has_parameter(name):
+            _declare_field(node, name, default, field)
+        return node.get_parameter_or(name).value
+
+    return _configured(model, declared, f"parameters of {node.get_name()}")
+
+
+def config_of(model: type[C], given: Mapping[str, Any], whose: str) -> C:
+    """The configuration that the parameters of another node say, by name; defaults for the rest.
+
+    Raises:
+        ConfigError: a value is outside its bounds, in an error that begins with `whose`.
+        PluginError: a part that is chosen cannot be found.
+    """
+    return _configured(model, lambda name, default, field: given.get(name), whose)
+
+
+def _configured(model: type[C], value_of: Lookup, whose: str) -> C:
+    """The configuration whose values somebody looks up, those of the chosen part included."""
     values: dict[str, Any] = {}
-    _declare(node, model(), (), values)
-    config = validated(model, values, f"parameters of {node.get_name()}")
+    _collect(model(), (), value_of, values)
+    config = validated(model, values, whose)
     if isinstance(config, PluginConfig) and (own := config.part_parameters()) is not None:
-        _declare(node, own(), (PARAMETERS,), values)
-        config = validated(model, values, f"parameters of {node.get_name()}")
+        _collect(own(), (PARAMETERS,), value_of, values)
+        config = validated(model, values, whose)
     return config
 
 
@@ -72,15 +95,13 @@ def describe(*models: type[Config]) -> str:
     return "\n".join(lines)
 
 
-def _declare(
-    node: Node, defaults: BaseModel, prefix: tuple[str, ...], values: dict[str, Any]
+def _collect(
+    defaults: BaseModel, prefix: tuple[str, ...], value_of: Lookup, values: dict[str, Any]
 ) -> None:
-    """Declare the fields of a section, and store what they are set to in `values`."""
+    """Store in `values` what the fields of a section are set to."""
     for path, field, default in _leaves(defaults, prefix):
         name = ".".join(path)
-        if not node.has_parameter(name):
-            _declare_field(node, name, default, field)
-        value = node.get_parameter_or(name).value
+        value = value_of(name, default, field)
         if value is not None:
             _store(values, path, _from_text(name, value) if _is_text(field) else value)
 

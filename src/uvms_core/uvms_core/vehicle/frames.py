@@ -12,6 +12,7 @@ import numpy as np
 from uvms_core.rotations import quat_to_matrix, rpy_to_quat
 from uvms_core.signals import Array
 from uvms_core.vehicle.arm import Arm, Joint, Mounting
+from uvms_core.vehicle.further_sensors import Sensor
 
 Pose = tuple[Array, Array]
 """Origin (3,) and rotation matrix (3, 3) of one frame in another."""
@@ -19,7 +20,7 @@ Pose = tuple[Array, Array]
 IDENTITY: Pose = (np.zeros(3), np.eye(3))
 
 
-def mounting_pose(mounting: Mounting) -> Pose:
+def mounting_pose(mounting: Mounting | Sensor) -> Pose:
     """Pose of a mounted frame, from its position and roll, pitch, yaw."""
     return np.array(mounting.position_m), quat_to_matrix(rpy_to_quat(*np.radians(mounting.rpy_deg)))
 

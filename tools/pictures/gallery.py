@@ -1,0 +1,45 @@
+"""The pictures of the viewer in the documentation: which run, which moment, which camera."""
+
+from dataclasses import dataclass
+
+ROCKS = (
+    "obstacles=[{name: rock, sphere: {center_m: [2.6, -0.5, 11.2], radius_m: 0.5}},"
+    " {name: wall, box: {center_m: [2.9, 1.2, 11.0], size_m: [0.3, 1.2, 2.0]}}]"
+)
+SEABED = "vehicle_overrides={environment.seabed_depth_m: 12.0}"
+PUSH = (
+    "events=[{at_s: 6.0, until_s: 20.0, wrench: {force_n: [0.0, 25.0, -8.0],"
+    " moment_nm: [0.0, 0.0, 0.0], frame: world}}]"
+)
+TETHER = "vehicle_overrides={tether: {reference_depth_m: 9.0, weight_per_m_n: -2.0}}"
+
+
+@dataclass(frozen=True)
+class Shot:
+    """A picture: `docs/figures/view_NAME.png`, with its description as JSON beside it."""
+
+    name: str
+    scenario: str
+    duration_s: float
+    at_s: float
+    camera: str
+    settings: tuple[str, ...] = ()
+    vehicle: str | None = None
+
+    @property
+    def arguments(self) -> list[str]:
+        """Of `uvms simulate`."""
+        sets = [word for each in self.settings for word in ("--set", each)]
+        vehicle = [] if self.vehicle is None else ["--vehicle", self.vehicle]
+        return [self.scenario, "--duration", f"{self.duration_s:g}", *vehicle, *sets]
+
+
+GALLERY = (
+    Shot("obstacles", "hover", 8.0, 8.0, "wide", (ROCKS, SEABED)),
+    Shot("push", "hover", 12.0, 10.0, "chase", (PUSH, TETHER)),
+    Shot("marker", "manipulation_marker", 8.0, 8.0, "wide"),
+    Shot("path", "manipulation", 60.0, 60.0, "tool"),
+    Shot("bluerov2", "hover", 6.0, 6.0, "wide", (), "bluerov2_alpha5"),
+)
+MOVIE = Shot("swing", "arm_swing", 52.0, 0.0, "wide")
+MOVIE_SPEED = 5.2
