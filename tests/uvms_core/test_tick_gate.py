@@ -396,3 +396,32 @@ def test_a_tick_whose_input_nobody_knows_yet_is_a_safe_one_and_waits_for_nothing
     ticks = [tick for name, stamp in tick_inputs(DT) for tick in gated.push(name, stamp, stamp)]
     assert [(tick.stamp, tick.missing) for tick in ticks] == [(DT, ())]
     assert ticks[0]["odometry"] == DT
+
+
+@pytest.mark.parametrize("first", ["joints", "gaps"])
+def test_a_tick_without_odometry_waits_for_the_joints_of_its_stamp_and_for_nothing_else(first):
+    """What is safe may depend on them; the reference will not come, as there is no odometry."""
+    inputs = {"odometry": Same(), "joints": Delayed(), "reference": Covering()}
+    gate = TickGate(inputs, "odometry", lockstep=True)
+    told = {
+        "joints": lambda: gate.push("joints", DT, "j1"),
+        "gaps": lambda: gate.skip(DT, {"odometry": -1}),
+    }
+    assert told.pop(first)() == []
+    ((tick,),) = (rest() for rest in told.values())
+    assert (tick.stamp, tick["joints"], tick.missing) == (DT, "j1", ("odometry",))
+
+
+def test_a_tick_without_odometry_and_joints_waits_for_nothing():
+    gate = delaying_gate()
+    assert gate.skip(DT, {"odometry": -1}) == []
+    (tick,) = gate.skip(DT, {"joints": -1})
+    assert tick["joints"] is None
+
+
+def test_in_real_time_late_joints_keep_their_own_stamp():
+    gate = delaying_gate(lockstep=False)
+    gate.push("joints", 0, Sample(0))
+    gate.skip(DT, {"joints": 0})
+    (tick,) = gate.push("odometry", DT, Sample(DT))
+    assert tick["joints"] == Sample(0)

@@ -97,6 +97,8 @@ class JointObserver:
     def shift_load(self, change: Array) -> None:
         """The model has changed: the load (n,) N m that it does not know changes with it."""
         self._x[2] += change
+        if self.now is not self._x:
+            self.now[2] += change
 
     def _start(self, joints: JointStates) -> None:
         self._stamp = joints.stamp
