@@ -223,8 +223,11 @@ class TickGate:
         return released
 
     def _is_due(self, stamp: int) -> bool:
-        """A safe tick waits only for what comes from the plant: others may owe theirs to what is
-        missing, but what is safe may depend on the joints."""
+        """Whether a tick goes on.
+
+        A safe one waits only for what comes from the plant: others may owe theirs to what is
+        missing, but what is safe may depend on the joints.
+        """
         if stamp not in self._idle:
             return self._complete(stamp)
         late = [item for item in self._inputs.values() if isinstance(item, Delayed)]
