@@ -6,13 +6,13 @@ from uvms_control.arm_controller import ArmController, JointAim
 from uvms_control.arm_gains import arm_gains
 from uvms_control.compensation import EndEffectorCompensation, JointCorrection
 from uvms_control.config import ControlConfig
-from uvms_control.joint_observer import JointObserver
 from uvms_control.reference import ReferenceSample
 from uvms_control.vehicle_data import effort_limits, least_moment
 from uvms_core import checks
 from uvms_core.signals import Array, JointStates, Odometry, Payload
 from uvms_core.vehicle import Vehicle, joint_limits
 from uvms_dynamics import inverse_dynamics, mass_matrix
+from uvms_dynamics.joint_filter import JointFilter, JointProcess
 from uvms_dynamics.joint_prediction import encoder_variances, joint_age_limit, loop_delay
 from uvms_dynamics.payload import LoadedModel
 
@@ -34,7 +34,7 @@ class ArmLaw:
         self._n = vehicle.n_joints
         effort, load = effort_limits(vehicle), config.arm.load_limit
         self.joints = ArmController(effort, config.arm.amplitude, config.arm.friction_compensation)
-        self.observer = JointObserver(model, effort, load * effort, encoder_variances(vehicle))
+        self.observer = JointFilter(model, load * effort, encoder_variances(vehicle))
         self.compensation = EndEffectorCompensation(
             model, config.compensation, *joint_limits(vehicle), least_moment(vehicle)
         )
@@ -47,7 +47,9 @@ class ArmLaw:
         self._is_prepared = True
         self._age_limit = joint_age_limit(self._vehicle, period)
         gains = arm_gains(self._vehicle, period, self._config.arm)
-        self.joints.gains = self.observer.gains = gains
+        self.joints.gains = gains
+        surprise = self.joints.effort_limit / gains.inertia
+        self.observer.process = JointProcess(gains.drift, gains.shake, surprise)
         self.compensation.fastest = 0.5 * float(gains.bandwidth.min())
         self.compensation.hull = 1.0 / (3.0 * loop_delay(self._vehicle, period))
 
