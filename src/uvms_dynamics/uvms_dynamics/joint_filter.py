@@ -61,7 +61,7 @@ class JointEstimate(NamedTuple):
 
     q: Array  # (n,) rad
     q_dot: Array  # (n,) rad/s
-    q_ddot: Array  # (n,) rad/s^2, the mean since the sample before
+    q_ddot: Array  # (n,) rad/s^2, under what was commanded until then
     covariance: Array  # (n, 3, 3) of the three, joint by joint
 
 
@@ -107,7 +107,8 @@ class JointFilter:
         n = self._load_limit.size
         self._stamp: int | None = None
         self._x = np.zeros((3, n))  # at the stamp of the newest sample
-        self._P, self._S = np.zeros((n, 3, 3)), np.zeros((n, 3, 3))  # of the gains, of the error
+        self._P = np.zeros((n, 3, 3))  # what the gains are made of
+        self._S = np.zeros((n, 3, 4))  # of the error, and of error and shake
         self._dt, self._walk = 0.0, np.zeros((2, 3, 3))  # of drift and shake within that
         self._drives: deque[tuple[int, JointDrive]] = deque()
         self.now = self._x
@@ -123,7 +124,9 @@ class JointFilter:
     def estimate(self) -> JointEstimate:
         """The joints at the newest sample."""
         if not self._drives:  # nothing but the first sample is known
-            return JointEstimate(self._x[0], self._x[1], np.zeros_like(self._x[0]), self._S.copy())
+            return JointEstimate(
+                self._x[0], self._x[1], np.zeros_like(self._x[0]), self._S[:, :, :3].copy()
+            )
         drive = self._drives[0][1]
         since = self._dt or np.inf
         shake = self.process.shake**2 / since
@@ -162,7 +165,7 @@ class JointFilter:
         self._stamp = joints.stamp
         self._x[0], self._x[1], self._x[2] = joints.position, joints.velocity, 0.0
         for i, drift in enumerate(self.process.drift):
-            self._P[i] = self._S[i] = np.diag((*self._variances, drift**2))
+            self._P[i] = self._S[i, :, :3] = np.diag((*self._variances, drift**2))
 
     def _to(self, stamp: int, measured: Array) -> None:
         """Move the filter to a new sample and take it in."""

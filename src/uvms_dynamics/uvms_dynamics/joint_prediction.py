@@ -111,6 +111,16 @@ class JointPrediction:
         self.filter.set_drift(np.full(self._vehicle.n_joints, jerk))
 
 
+def carried_by_rate(joints: JointStates, tick: int) -> Array:
+    """Angles (n,) rad at a tick, ns, of a joint state that may be late, by its own rates.
+
+    For who looks at the joints too seldom for a filter. Nothing is carried on for longer than
+    `MAX_AGE_S`, after which nobody would still use it.
+    """
+    age = min(max(to_seconds(tick - joints.stamp), 0.0), checks.MAX_AGE_S)
+    return joints.position + age * joints.velocity
+
+
 def jerk_for(bandwidth: float, variances: Array, interval_s: float) -> float:
     """Jerk J, rad/s^3 within one second, that gives the filter of the joints this bandwidth, rad/s.
 

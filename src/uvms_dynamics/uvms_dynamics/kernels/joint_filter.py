@@ -1,8 +1,9 @@
 """Kernels of the joint filter (`uvms_dynamics.joint_filter`): one joint after the other.
 
-x (3, n): angles rad, rates rad/s, loads N m; P (n, 3, 3): the covariance that the gains are made of,
-the load's over the inertia, rad/s^2; S (n, 3, 3): that of the error that these gains leave; drive:
-a `JointDrive` as a tuple.
+x (3, n): angles rad, rates rad/s, loads N m; P (n, 3, 3): the covariance that the gains are made
+of, the load's over the inertia, rad/s^2; S (n, 3, 4): that of the error that these gains leave, and
+beside it its covariance with the mean of the last interval's shake; drive: a `JointDrive` as a
+tuple.
 """
 
 import numpy as np
@@ -72,7 +73,8 @@ def advance(
         F[0, 1], F[0, 2], F[1, 1], F[1, 2] = e1, e2, phi, e1
         Q = drift[i] ** 2 * walks[0]
         P[i] = F @ P[i] @ F.T + Q
-        S[i] = F @ S[i] @ F.T + Q + shake[i] ** 2 * walks[1]
+        S[i, :, :3] = F @ S[i, :, :3].copy() @ F.T + Q + shake[i] ** 2 * walks[1]
+        S[i, :, 3] = -(shake[i] ** 2) * np.array((0.5 * dt, 1.0, 0.0))
     carry(model, x, dt, drive)
 
 
@@ -89,7 +91,10 @@ def acceleration(model: Array, x: Array, S: Array, drive: tuple, shake: Array) -
         q_ddot[i] = a - decay * (x[1, i] - drive[2][i])
         J = np.eye(3)
         J[2, 1] = -decay
-        covariance[i] = J @ S[i] @ J.T
+        covariance[i] = J @ S[i, :, :3].copy() @ J.T
+        shared = J @ S[i, :, 3].copy()
+        covariance[i, :, 2] -= shared
+        covariance[i, 2, :] -= shared
         covariance[i, 2, 2] += shake[i]
     return q_ddot, covariance
 
@@ -126,7 +131,7 @@ def take_in(
             x[1, i] += k1 * innovation
             jump[i] += k2 * innovation
             _correct(P[i], m, k0, k1, k2, variances[m])
-            _correct(S[i], m, k0, k1, k2, variances[m])
+            _correct_both(S[i], m, k0, k1, k2, variances[m])
     for i in range(n):
         load = x[2, i]
         for j in range(n):
@@ -158,3 +163,14 @@ def _correct(P: Array, m: int, k0: float, k1: float, k2: float, variance: float)
     left[2, m] -= k2
     k = np.array((k0, k1, k2))
     P[:] = left @ P @ left.T + variance * np.outer(k, k)
+
+
+@exact_inner
+def _correct_both(S: Array, m: int, k0: float, k1: float, k2: float, variance: float) -> None:
+    """S after a measurement of state m with these gains."""
+    P, shared = S[:, :3].copy(), S[m, 3]
+    _correct(P, m, k0, k1, k2, variance)
+    S[:, :3] = P
+    S[0, 3] -= k0 * shared
+    S[1, 3] -= k1 * shared
+    S[2, 3] -= k2 * shared
