@@ -44,15 +44,22 @@ def late(motion, age, seconds=9.0):
     return np.max(errors, axis=0)
 
 
-def test_samples_of_the_tick_are_filtered():
-    """Without lag, and the angle with less than half of the encoders' noise."""
+def test_a_sample_of_the_tick_is_used_as_it_is():
+    joints = sample(4.0, swing)
+    found = JointPrediction(VEHICLE).step(joints, joints.stamp)
+    np.testing.assert_array_equal(found[:2], [joints.position, joints.velocity])
+
+
+def test_the_filter_halves_the_noise_of_the_angles():
+    """Without lag, and the rates are no noisier than the encoders'."""
     rng, sigma = np.random.default_rng(1), np.sqrt(encoder_variances(VEHICLE))
     predict, errors = JointPrediction(VEHICLE), []
     for t in np.arange(0.0, 9.0, PERIOD):
         true = swing(t)
         seen = true[:2] + sigma[:, None] * rng.standard_normal((2, 4))
         stamp = to_nanoseconds(t)
-        found = predict.step(JointStates(stamp, *seen, np.zeros(4)), stamp)
+        predict.step(JointStates(stamp, *seen, np.zeros(4)), stamp)
+        found = predict.filter.estimate
         errors.append([found.q - true[0], found.q_dot - true[1]])
     noise = np.std(errors[20:], axis=0)
     assert (noise[0] < 0.5 * sigma[0]).all()

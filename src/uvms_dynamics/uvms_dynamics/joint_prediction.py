@@ -6,7 +6,7 @@ to the tick with the joints' acceleration, which the joint filter finds at the s
 
     q(t) = q(s) + q_dot(s) d + 1/2 q_ddot d^2,   q_dot(t) = q_dot(s) + q_ddot d.
 
-At d = 0 it is the estimate of the filter. What is left is the change of the acceleration, of the
+At d = 0 that is the measurement itself. What is left is the change of the acceleration, of the
 order of jerk d^2 / 2 in the rate. The error of q_ddot counts d times in the rate, so that a
 prediction is worth less the older the state is; `joint_age_limit` says where it ends.
 
@@ -85,9 +85,7 @@ class JointPrediction:
             self._stamp = joints.stamp
         self._tick = tick
         found = self.filter.estimate
-        if age == 0.0:
-            return found
-        # A filter that is as slow as late samples want it lags in angle and rate.
+        # Filtered rates lag, and the momentum residual takes their differences for forces.
         q_dot = joints.velocity + age * found.q_ddot
         q = joints.position + 0.5 * age * (joints.velocity + q_dot)
         return JointEstimate(q, q_dot, found.q_ddot, self._carried(found.covariance, age))
