@@ -15,7 +15,7 @@ SETTINGS = [
     "navigation.initial_position_m=[0.0, 0.0, 0.0]",
     "navigation.start=fixes",
     "vehicle.sensors.gps.horizontal_noise_m=0.02",
-    "goal={pose: {hold_s: 2.0}}",
+    "goal={pose: {position_m: [12.0, -7.0, 0.03], frame: map_ned, hold_s: 2.0}}",
     f"events=[{{at_s: 0.0, until_s: {SILENT_S}, sensor: gps, fault: silent}}]",
 ]
 

@@ -9,13 +9,13 @@ from uvms_core import topics
 
 SCENARIO = {
     "scenario": "late_fix",
-    "duration_s": 25.0,
+    "duration_s": 12.0,
     "vehicle_overrides": {"sensors.gps.horizontal_noise_m": 0.02},
     "plant": {"initial_position_m": [12.0, -7.0, 0.2], "initial_posture": "home"},
     "navigation": {"start": "fixes", "initial_position_m": [0.0, 0.0, 0.0]},
     "goals": [
         {"pose": {"position_m": [12.0, -7.0, 0.22], "frame": "map_ned", "hold_s": 1.0}},
-        {"pose": {"position_m": [12.0, -7.0, 0.24], "frame": "map_ned", "hold_s": 0.5}},
+        {"joints": {"times_s": [2.0], "positions_deg": [[0.0, 10.0, 112.0, 0.0]]}},
     ],
     "events": [{"at_s": 0.0, "until_s": 2.5, "sensor": "gps", "fault": "silent"}],
 }

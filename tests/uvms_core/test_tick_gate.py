@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from uvms_core.tick_gate import Covering, Delayed, Periodic, Previous, Same, TickGate
+from uvms_core.tick_gate import Covering, Periodic, Previous, Same, TickGate
 
 DT = 50
 
@@ -274,66 +274,6 @@ def test_the_order_in_which_messages_and_gaps_come_does_not_matter(order):
     assert [(tick.stamp, tick["dvl"]) for tick in ticks] == [(100, ("d50",))]
 
 
-def delaying_gate(lockstep: bool = True, in_loop: bool = True) -> TickGate:
-    return TickGate({"odometry": Same(), "joints": Delayed()}, "odometry", lockstep, in_loop)
-
-
-def test_without_a_word_of_the_plant_the_joints_of_the_tick_are_waited_for():
-    gate = delaying_gate()
-    gate.push("joints", 0, "j0")
-    assert [tick["joints"] for tick in gate.push("odometry", 0, "o0")] == ["j0"]
-    assert gate.push("odometry", DT, "o1") == []
-    assert [tick["joints"] for tick in gate.push("joints", DT, "j1")] == ["j1"]
-
-
-@given(st.data())
-def test_late_joints_are_the_newest_that_have_come_in_whatever_order_that_is_heard(data):
-    """Late by two ticks from the second on, and at the sixth all at once."""
-    came = {0: [0], 1: [], 2: [], 3: [1], 4: [2], 5: [3, 4, 5], 6: [6]}
-    expected = {0: 0, 1: 0, 2: 0, 3: 1, 4: 2, 5: 5, 6: 6}
-    gate, newest = delaying_gate(), -1
-    for k, samples in came.items():
-        newest = max([newest, *samples])
-        messages = ["odometry", *(["joints"] * len(samples)), *(["gaps"] * (samples != [k]))]
-        released, rest = [], [DT * each for each in samples]
-        for name in data.draw(st.permutations(messages)):
-            if name == "gaps":
-                released += gate.skip(k * DT, {"joints": newest * DT})
-            elif name == "joints":
-                when = rest.pop(0)
-                released += gate.push("joints", when, Sample(when))
-            else:
-                released += gate.push("odometry", k * DT, None)
-        (tick,) = released
-        assert (tick.stamp, tick["joints"]) == (k * DT, Sample(expected[k] * DT))
-
-
-def test_a_node_beside_the_loop_does_not_take_joints_that_came_after_its_tick():
-    gate = delaying_gate(in_loop=False)
-    gate.push("joints", 0, "j0")
-    gate.push("odometry", 0, "o0")
-    gate.push("joints", DT, "j1")  # came at the tick of 3 DT
-    gate.skip(3 * DT, {"joints": DT})
-    gate.push("odometry", 2 * DT, "o2")
-    (tick,) = gate.skip(2 * DT, {"joints": 0})
-    assert (tick.stamp, tick["joints"]) == (2 * DT, "j0")
-    (tick,) = gate.push("odometry", 3 * DT, "o3")
-    assert (tick.stamp, tick["joints"]) == (3 * DT, "j1")
-
-
-def test_a_late_sample_that_cannot_be_used_is_not_waited_for():
-    gate = delaying_gate()
-    gate.push("joints", 0, "j0")
-    gate.push("odometry", 0, "o0")
-    gate.push("odometry", 2 * DT, "o2")
-    assert gate.skip(2 * DT, {"joints": DT}) == []
-    (tick,) = gate.excuse("joints", DT)
-    assert (tick["joints"], tick.missing) == ("j0", ())
-    gate.push("odometry", 3 * DT, "o3")
-    (tick,) = gate.skip(3 * DT, {"joints": DT})
-    assert tick["joints"] == "j0"
-
-
 def test_a_late_sample_of_a_sensor_that_cannot_be_used_is_not_waited_for():
     gate = skipping_gate()
     gate.push("dvl", 0, "d0")
@@ -344,20 +284,6 @@ def test_a_late_sample_of_a_sensor_that_cannot_be_used_is_not_waited_for():
     assert gate.skip(100, {"dvl": 50}) == []
     (tick,) = gate.excuse("dvl", 50)
     assert (tick.stamp, tick["dvl"]) == (100, ())
-
-
-def test_a_node_that_starts_before_any_joints_says_that_it_lacks_them():
-    gate = delaying_gate()
-    gate.push("odometry", DT, "o1")
-    (tick,) = gate.skip(DT, {"joints": -1})
-    assert (tick["joints"], tick.missing) == (None, ("joints",))
-
-
-def test_in_real_time_the_newest_joints_are_taken_whatever_the_plant_says():
-    gate = delaying_gate(lockstep=False)
-    gate.push("joints", 0, "j0")
-    gate.skip(DT, {"joints": -1})
-    assert [tick["joints"] for tick in gate.push("odometry", DT, "o1")] == ["j0"]
 
 
 def off_grid(lockstep, stamps):

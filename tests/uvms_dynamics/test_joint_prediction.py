@@ -6,7 +6,7 @@ import pytest
 from uvms_core.errors import SignalError
 from uvms_core.signals import JointStates, to_nanoseconds
 from uvms_core.vehicle import load_vehicle
-from uvms_dynamics.joint_prediction import JointPrediction, joint_age_limit
+from uvms_dynamics.joint_prediction import JointPrediction, encoder_variances, joint_age_limit
 
 VEHICLE = load_vehicle()
 PERIOD = 0.05
@@ -47,8 +47,23 @@ def late(motion, age, seconds=9.0):
 def test_a_sample_of_the_tick_is_used_as_it_is():
     joints = sample(4.0, swing)
     found = JointPrediction(VEHICLE).step(joints, joints.stamp)
-    assert found.q is joints.position
-    assert found.q_dot is joints.velocity
+    np.testing.assert_array_equal(found[:2], [joints.position, joints.velocity])
+
+
+def test_the_filter_halves_the_noise_of_the_angles():
+    """Without lag, and the rates are no noisier than the encoders'."""
+    rng, sigma = np.random.default_rng(1), np.sqrt(encoder_variances(VEHICLE))
+    predict, errors = JointPrediction(VEHICLE), []
+    for t in np.arange(0.0, 9.0, PERIOD):
+        true = swing(t)
+        seen = true[:2] + sigma[:, None] * rng.standard_normal((2, 4))
+        stamp = to_nanoseconds(t)
+        predict.step(JointStates(stamp, *seen, np.zeros(4)), stamp)
+        found = predict.filter.estimate
+        errors.append([found.q - true[0], found.q_dot - true[1]])
+    noise = np.std(errors[20:], axis=0)
+    assert (noise[0] < 0.5 * sigma[0]).all()
+    assert (noise[1] < 1.05 * sigma[1]).all()
 
 
 def test_a_constant_acceleration_is_carried_exactly():
@@ -102,9 +117,10 @@ def test_a_sample_that_came_before_is_carried_further():
     predict = JointPrediction(VEHICLE)
     for k in range(60):
         predict.step(sample(PERIOD * k, swing), to_nanoseconds(PERIOD * k))
-    last, acceleration = sample(PERIOD * 59, swing), predict.filtered.copy()
+    last, before = sample(PERIOD * 59, swing), predict.filter.estimate
     found = predict.step(last, to_nanoseconds(PERIOD * 61))
-    np.testing.assert_array_equal(predict.filtered, acceleration)
+    np.testing.assert_array_equal(found.q_ddot, before.q_ddot)
+    assert (found.covariance[:, [0, 1], [0, 1]] > before.covariance[:, [0, 1], [0, 1]]).all()
     np.testing.assert_allclose(found.q, swing(PERIOD * 61)[0], atol=2e-4)
 
 

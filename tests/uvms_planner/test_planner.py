@@ -1,3 +1,5 @@
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from planner_rig import (
@@ -145,6 +147,14 @@ def test_the_attitude_limits_bring_the_arm_back_and_are_told_until_then():
     assert run.steps[2].diagnostics()["attitude_violation_deg"] > 3.0
     assert violations[-1] == 0.0
     assert np.all(np.diff(violations) <= 1e-9)
+
+
+def test_late_joints_are_carried_to_the_tick():
+    """The arm is held where it is by now, and not where it was."""
+    planner, rate = MotionPlanner(reference_vehicle(), PlannerConfig(), 1), np.full(4, 0.1)
+    late = replace(joints(stamp=to_nanoseconds(0.8)), velocity=rate)
+    step = planner.step(to_nanoseconds(1.0), odometry(to_nanoseconds(1.0)), late)
+    assert np.allclose(step.references[0].q, np.deg2rad(START_DEG) + 0.2 * rate)
 
 
 def test_a_path_begins_with_the_first_segment_that_is_not_planned():

@@ -6,9 +6,9 @@ import numpy as np
 
 from uvms_control.arm_gains import ArmGains
 from uvms_control.errors import ControlSetupError
-from uvms_control.joint_observer import JointDrive
 from uvms_core.signals import Array
 from uvms_dynamics import Model, inverse_dynamics
+from uvms_dynamics.joint_filter import JointDrive
 from uvms_dynamics.kernels import layout
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 

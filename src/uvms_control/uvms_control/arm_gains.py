@@ -10,6 +10,7 @@ from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.plausible.stability import postures
 from uvms_dynamics import build_model, mass_matrix
+from uvms_dynamics.external_bandwidth import thrust_authority
 from uvms_dynamics.joint_prediction import encoder_variances
 
 RADIANS_PER_PERIOD = 0.3
@@ -18,7 +19,8 @@ Digital Control of Dynamic Systems, 3rd ed., section 11.1, ask for 20 at least).
 WHOLE_EFFORT_ERROR_RAD = 0.1
 """Error at which the feedback may ask for the whole effort of a joint; smaller ones must not."""
 NOISE_SHARE = 0.01
-"""Largest standard deviation of the torque that encoder noise makes, as a share of the effort."""
+"""Largest standard deviation of the torque that encoder noise makes, as a share of the effort; and
+of the thrust that the other sensors' noise makes, as a share of the authority."""
 
 
 @dataclass(frozen=True)
@@ -29,6 +31,7 @@ class ArmGains:
     stiffness: Array  # k, 1/s^2
     damping: Array  # d, 1/s
     drift: Array  # J: how far an unknown load drifts within a second, rad/s^2
+    shake: Array  # density of the acceleration that the hull's jitter makes, rad/s^2 s^(1/2)
     inertia: Array  # S_ii, the largest of the vehicle file's postures, kg m^2
     limited_by: tuple[str, ...]  # what sets the bandwidth: period, effort, noise or config
 
@@ -59,6 +62,7 @@ def arm_gains(vehicle: Vehicle, period_s: float, config: ArmControlConfig) -> Ar
         gains[:, 0],
         gains[:, 1],
         load_drift(bandwidth, sigma_q, sigma_rate, period_s),
+        hull_jitter(vehicle) * np.sqrt(period_s),
         inertia,
         tuple(names[i] for i in values.argmin(axis=0)),
     )
@@ -109,6 +113,22 @@ def largest_inertia(vehicle: Vehicle) -> Array:
     model = build_model(vehicle)
     found = [floating_inertia(mass_matrix(model, q)) for _, q in postures(vehicle)]
     return np.max(np.diagonal(found, axis1=1, axis2=2), axis=0)
+
+
+def hull_jitter(vehicle: Vehicle) -> Array:
+    """Accelerations of the joints (n,), std in rad/s^2, that noise of the vehicle's loop makes.
+
+    Thrust of `NOISE_SHARE` of each axis's authority, which is what the gains of the vehicle allow
+    its sensors' noise, accelerates the hull, and the joints by -M_qq^-1 M_qb nu_dot; the largest of
+    the file's postures.
+    """
+    model, authority = build_model(vehicle), thrust_authority(vehicle)
+    found = []
+    for _, q in postures(vehicle):
+        mass = mass_matrix(model, q)
+        hull = NOISE_SHARE * authority / np.diag(mass)[:6]
+        found.append(np.hypot.reduce(np.linalg.solve(mass[6:, 6:], mass[6:, :6]) * hull, axis=1))
+    return np.asarray(np.max(found, axis=0))
 
 
 def floating_inertia(mass: Array) -> Array:

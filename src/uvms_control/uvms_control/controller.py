@@ -5,6 +5,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from uvms_control.arm_hold import ArmHold
 from uvms_control.arm_law import ArmLaw
 from uvms_control.compensation import as_if_held
 from uvms_control.config import ControlConfig
@@ -16,6 +17,7 @@ from uvms_control.stability import StabilityMonitor
 from uvms_control.tracking_error import tracking_error
 from uvms_control.vehicle_law import VehicleLaw
 from uvms_core import checks
+from uvms_core.inputs import KEEP
 from uvms_core.signals import (
     Allocation,
     Array,
@@ -65,6 +67,7 @@ class Controller:
         self._monitor = NO_MONITOR
         self._lead = 0
         self.arm = ArmLaw(vehicle, self._loaded, config)
+        self._hold = ArmHold(vehicle, self.arm)
         self._swing = HullSwing()
         self._budget: DisturbanceBudget | None = None
         self.reset()
@@ -87,15 +90,21 @@ class Controller:
 
     def reset(self) -> None:
         """Return to the state before the first step."""
-        self.stability: Stability | None = None
         self._lacking = NOTHING  # of the last wrench, beyond what the thrusters gave
-        self._stamp: int | None = None
         self._reference: Reference | None = None  # that was checked
         self._plan: PlannedMotion  # of that
-        self._law.reset()
-        self._swing.reset()
+        self._forget_vehicle()
         self._loaded.take(None)
         self.arm.reset()
+        self._hold.end()
+
+    def _forget_vehicle(self) -> None:
+        """What follows from how the vehicle moved until now."""
+        self.stability: Stability | None = None
+        self._stamp: int | None = None
+        self._law.reset()
+        self._swing.reset()
+        self.arm.compensation.reset()
 
     def inform(self, budget: DisturbanceBudget, allocation: Allocation | None) -> None:
         """What explains the disturbance, and what the thrusters gave a tick ago."""
@@ -120,6 +129,7 @@ class Controller:
         Raises SignalError, naming the value, and keeps its state if an input is bad.
         """
         self._check(odometry, joints, disturbance, reference)
+        self._hold.end()
         dt = self._elapsed(odometry.stamp)
         q, _ = self.arm.observe(joints, odometry.stamp)
         if self._budget is not None:
@@ -145,6 +155,16 @@ class Controller:
             held = as_if_held(odometry, tracking, self._axes.is_controlled, swing)
         effort = self.arm.step(odometry, desired, mass, nu_dot, dt, held)
         return Wrench(odometry.stamp, wrench), JointCommand(odometry.stamp, effort)
+
+    def hold(self, joints: JointStates, stamp: int) -> JointCommand:
+        """Torques that keep the arm where it is while there is no odometry; see `ArmHold`.
+
+        After more than `KEEP` of it the vehicle's law begins anew, and the arm's goes on.
+        """
+        command = self._hold.step(joints, stamp)
+        if self._stamp is not None and stamp - self._stamp > KEEP:
+            self._forget_vehicle()
+        return command
 
     def _vehicle_share(
         self,

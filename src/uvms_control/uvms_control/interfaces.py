@@ -29,7 +29,9 @@ class ControlLaw(Protocol):
     observer looks for them, and the `Allocation` of the tick before (None at the first), with what
     the thrusters achieved. A method `prepare(period)`, in s, is called once before the first step:
     there a law works out its gains, or refuses those of the configuration. A law with an attribute
-    `stability` (`Stability` or None after a step) has it published and logged.
+    `stability` (`Stability` or None after a step) has it published and logged. A method
+    `hold(joints, stamp)` is called instead of `step` at a tick, ns, without odometry, and gives the
+    `JointCommand` that keeps the arm in its place; a law without it has its arm held by `ArmHold`.
     """
 
     @abstractmethod

@@ -1,19 +1,32 @@
 """Controller and thrust allocator as parts of the loop."""
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 
 import numpy as np
 
+from uvms_control.arm_hold import ArmHold
+from uvms_control.arm_law import ArmLaw
 from uvms_control.config import AllocatorConfig, ControlConfig
 from uvms_control.health import Thrusters
 from uvms_control.interfaces import AllocationMethod, ControlLaw
 from uvms_core import topics
 from uvms_core.diagnostics import Trouble
+from uvms_core.errors import UvmsError
 from uvms_core.part import Output, Part
 from uvms_core.plugin import create, prepared
-from uvms_core.signals import Allocation, JointCommand, ThrusterCommand, Wrench
+from uvms_core.signals import (
+    Allocation,
+    JointCommand,
+    JointStates,
+    ThrusterCommand,
+    Wrench,
+    to_seconds,
+)
 from uvms_core.tick_gate import Companion, CompanionBefore, Covering, Delayed, Same, Tick
+from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics import build_model
+from uvms_dynamics.payload import LoadedModel
 
 
 class ControllerPart(Part):
@@ -21,11 +34,12 @@ class ControllerPart(Part):
 
     trigger = topics.ODOMETRY
     outputs = topics.NODES[topics.CONTROLLER].outputs
-    left_to_reader = (topics.JOINT_COMMAND,)  # the plant has brakes
 
     def __init__(self, vehicle: Vehicle, config: ControlConfig, period: int) -> None:
         self._vehicle, self._config, self._period = vehicle, config, period
         self.law = self._make_law()
+        self._is_held = False  # the arm, by the last safe output
+        self._own_hold: ArmHold | None = None  # of a law that has none, while it lasts
         self.inputs = {
             topics.ODOMETRY: Same(),
             topics.JOINT_STATES: Delayed(),
@@ -45,6 +59,7 @@ class ControllerPart(Part):
             tick[topics.DISTURBANCE.name],
             tick[topics.REFERENCE.name],
         )
+        self._own_hold = None
         yield topics.WRENCH_COMMAND, wrench
         yield topics.JOINT_COMMAND, joints
         if (stability := getattr(self.law, "stability", None)) is not None:
@@ -59,9 +74,34 @@ class ControllerPart(Part):
         return law
 
     def safe(self, tick: Tick) -> Iterator[Output]:
-        """No wrench and no torque."""
+        """No wrench; the arm stays where it is, or has no torque where its joints are not known."""
         yield topics.WRENCH_COMMAND, Wrench(tick.stamp, np.zeros(6))
-        yield topics.JOINT_COMMAND, JointCommand(tick.stamp, np.zeros(self._vehicle.n_joints))
+        held = self._held(tick)
+        self._is_held = held is not None
+        none = JointCommand(tick.stamp, np.zeros(self._vehicle.n_joints))
+        yield topics.JOINT_COMMAND, held or none
+
+    def _held(self, tick: Tick) -> JointCommand | None:
+        joints, hold = tick[topics.JOINT_STATES.name], getattr(self.law, "hold", None)
+        if joints is None:
+            return None
+        try:
+            command: JointCommand = (hold or self._without_law)(joints, tick.stamp)
+        except (UvmsError, np.linalg.LinAlgError, OverflowError, FloatingPointError):
+            return None
+        return command if np.isfinite(command.effort).all() else None
+
+    def _without_law(self, joints: JointStates, stamp: int) -> JointCommand:
+        if self._own_hold is None:
+            arm = ArmLaw(self._vehicle, LoadedModel(build_model(self._vehicle)), self._config)
+            arm.prepare(to_seconds(self._period))
+            self._own_hold = ArmHold(self._vehicle, arm)
+        return self._own_hold.step(joints, stamp)
+
+    @property
+    def left_to_reader(self) -> Sequence[Topic]:  # type: ignore[override]
+        """No torque is left to the plant, which has brakes; what holds the arm is not."""
+        return () if self._is_held else (topics.JOINT_COMMAND,)
 
 
 class AllocatorPart(Part):

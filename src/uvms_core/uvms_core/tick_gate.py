@@ -97,7 +97,7 @@ class TickGate:
         self._last = -1
         self._begun = False
         self._excuses = False
-        self._idle: set[int] = set()  # ticks that are safe ones in any case, and wait for nothing
+        self._idle: set[int] = set()  # ticks that are safe ones in any case
 
     def reset(self) -> None:
         """Forget all inputs and open ticks; the counts go on."""
@@ -129,9 +129,10 @@ class TickGate:
             item = self._inputs.get(name)
             if isinstance(item, Periodic):
                 item.skip(stamp, last)
-            elif isinstance(item, Delayed) and self._lockstep:  # else the newest is taken anyway
-                item.skip(stamp, last)
-                self._excuses = True
+            elif isinstance(item, Delayed):
+                if self._lockstep:  # else the newest is taken anyway
+                    item.skip(stamp, last)
+                    self._excuses = True
             elif isinstance(item, Same):  # whoever makes it does not know it yet
                 item.excuse(stamp)
                 self._excuses = True
@@ -212,7 +213,7 @@ class TickGate:
 
     def _release(self) -> list[Tick]:
         released = []
-        while self._open and (self._open[0] in self._idle or self._complete(self._open[0])):
+        while self._open and self._is_due(self._open[0]):
             stamp = self._open.popleft()
             self._idle.discard(stamp)
             self._broken = False
@@ -220,6 +221,17 @@ class TickGate:
             inputs = {name: item.take(stamp) for name, item in self._inputs.items()}
             released.append(Tick(stamp, inputs, missing))
         return released
+
+    def _is_due(self, stamp: int) -> bool:
+        """Whether a tick goes on.
+
+        A safe one waits only for what comes from the plant: others may owe theirs to what is
+        missing, but what is safe may depend on the joints.
+        """
+        if stamp not in self._idle:
+            return self._complete(stamp)
+        late = [item for item in self._inputs.values() if isinstance(item, Delayed)]
+        return not self._lockstep or all(item.complete(stamp) for item in late)
 
     def _missing(self, stamp: int) -> tuple[str, ...]:
         return tuple(name for name, item in self._inputs.items() if item.missing(stamp))

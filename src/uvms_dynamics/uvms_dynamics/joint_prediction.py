@@ -2,7 +2,7 @@
 
 A joint state of stamp s that is used at the tick t is old by d = t - s. What is fed forward of it
 is then wrong by what the joints did within d, which acts as a delay in the loop. So it is carried
-to the tick with the joints' acceleration, which a tracking filter finds at the stamps:
+to the tick with the joints' acceleration, which the joint filter finds at the stamps:
 
     q(t) = q(s) + q_dot(s) d + 1/2 q_ddot d^2,   q_dot(t) = q_dot(s) + q_ddot d.
 
@@ -15,14 +15,13 @@ closed before it can swing; late by d it would do so at about 1/d, if the filter
 So its bandwidth is at most `RADIANS_OF_AGE` / d.
 """
 
-from typing import NamedTuple
-
 import numpy as np
 
 from uvms_core import checks
 from uvms_core.signals import Array, JointStates, to_seconds
 from uvms_core.vehicle import Vehicle
-from uvms_dynamics.tracking import VARIANCE_FLOOR, TrackingFilter
+from uvms_dynamics.joint_filter import JointEstimate, JointFilter
+from uvms_dynamics.tracking import VARIANCE_FLOOR, transition, walk
 
 RADIANS_OF_PERIOD = np.pi / 2.0
 """Bandwidth of the acceleration times the time between two samples, by rule: half of the highest
@@ -32,14 +31,6 @@ RADIANS_OF_AGE = 1.0 / 3.0
 """Bandwidth of the acceleration times the age of the samples: it is carried to the tick unchanged,
 and what changes faster would come with the wrong phase. As of every loop here, a third of the
 inverse of the delay."""
-
-
-class JointMotion(NamedTuple):
-    """Angles, rates and accelerations of the joints at a tick."""
-
-    q: Array  # (n,) rad
-    q_dot: Array  # (n,) rad/s
-    q_ddot: Array  # (n,) rad/s^2
 
 
 class JointPrediction:
@@ -60,15 +51,14 @@ class JointPrediction:
         age_limit_s: float | None = None,
     ) -> None:
         self._vehicle = vehicle
-        self._filter = TrackingFilter(3, jerk_rad_s3 or 0.0)
         self._jerk = jerk_rad_s3
         self._suited = (0.0, 0.0)  # age of the last sample when it came and its interval, s
         self._variances = encoder_variances(vehicle)
+        drift = np.full(vehicle.n_joints, jerk_rad_s3 or 0.0)
+        self.filter = JointFilter.without_drives(drift, self._variances)
         self._limit = age_limit_s
         self._stamp: int | None = None  # of the last sample
         self._tick: int | None = None
-        self.filtered = np.zeros((3, vehicle.n_joints))
-        """Angles, rates and accelerations (3, n) of the tracking filter, at the last sample."""
 
     def check(self, joints: JointStates, tick: int) -> None:
         """SignalError where the joint state is newer than the tick, ns, or too old for it."""
@@ -83,24 +73,30 @@ class JointPrediction:
             return checks.MAX_AGE_S
         return joint_age_limit(self._vehicle, to_seconds(tick - self._tick))
 
-    def step(self, joints: JointStates, tick: int) -> JointMotion:
+    def step(self, joints: JointStates, tick: int) -> JointEstimate:
         """The joints at a tick, ns; `check` comes before.
 
         A sample that has been seen is not taken in again, only carried further.
         """
+        age = to_seconds(tick - joints.stamp)
         if self._stamp is None or joints.stamp > self._stamp:
-            dt = 0.0 if self._stamp is None else to_seconds(joints.stamp - self._stamp)
-            measured = np.array((joints.position, joints.velocity))
-            self._suit(to_seconds(tick - joints.stamp), dt)
-            self.filtered = self._filter.step(dt, measured, self._variances)
+            self._suit(age, 0.0 if self._stamp is None else to_seconds(joints.stamp - self._stamp))
+            self.filter.step(joints, joints.stamp)
             self._stamp = joints.stamp
         self._tick = tick
-        q_ddot = self.filtered[2]
-        if joints.stamp == tick:
-            return JointMotion(joints.position, joints.velocity, q_ddot)
-        age = to_seconds(tick - joints.stamp)
-        q_dot = joints.velocity + age * q_ddot
-        return JointMotion(joints.position + 0.5 * age * (joints.velocity + q_dot), q_dot, q_ddot)
+        found = self.filter.estimate
+        # Filtered rates lag, and the momentum residual takes their differences for forces.
+        q_dot = joints.velocity + age * found.q_ddot
+        q = joints.position + 0.5 * age * (joints.velocity + q_dot)
+        return JointEstimate(q, q_dot, found.q_ddot, self._carried(found.covariance, age))
+
+    def _carried(self, covariance: Array, age: float) -> Array:
+        """Of a measurement, and a filtered acceleration, that are carried on by age, s."""
+        start = covariance.copy()
+        start[:, :2, :] = start[:, :, :2] = 0.0
+        start[:, [0, 1], [0, 1]] = self._variances
+        F, drift = transition(3, age), self.filter.process.drift**2
+        return np.asarray(F @ start @ F.T + drift[:, None, None] * walk(3, age))
 
     def _suit(self, age: float, dt: float) -> None:
         """Let the filter be as fast as samples of this age, s, allow; dt s is their interval."""
@@ -110,7 +106,17 @@ class JointPrediction:
         jerk = self._jerk or jerk_for(RADIANS_OF_PERIOD / dt, self._variances, dt)
         if age > 0.0:
             jerk = min(jerk, jerk_for(RADIANS_OF_AGE / age, self._variances, dt))
-        self._filter.jerk = jerk
+        self.filter.set_drift(np.full(self._vehicle.n_joints, jerk))
+
+
+def carried_by_rate(joints: JointStates, tick: int) -> Array:
+    """Angles (n,) rad at a tick, ns, of a joint state that may be late, by its own rates.
+
+    For who looks at the joints too seldom for a filter. Nothing is carried on for longer than
+    `MAX_AGE_S`, after which nobody would still use it.
+    """
+    age = min(max(to_seconds(tick - joints.stamp), 0.0), checks.MAX_AGE_S)
+    return joints.position + age * joints.velocity
 
 
 def jerk_for(bandwidth: float, variances: Array, interval_s: float) -> float:

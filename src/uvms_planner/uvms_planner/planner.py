@@ -20,6 +20,7 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import end_effector
+from uvms_dynamics.joint_prediction import carried_by_rate
 from uvms_dynamics.kernels.rotations import matrix_to_quat
 from uvms_planner.config import PlannerConfig
 from uvms_planner.errors import GoalRejected
@@ -246,7 +247,8 @@ class MotionPlanner:
     def _hold_at(self, stamp: int, odometry: Odometry, joints: JointStates) -> _Plan:
         """Begin at rest in the pose of the first tick, level."""
         yaw = _yaw_of(odometry)
-        configuration = np.concatenate([odometry.position, [yaw], joints.position])
+        q = carried_by_rate(joints, stamp)
+        configuration = np.concatenate([odometry.position, [yaw], q])
         knot = Knot.at_rest(stamp, configuration)
         return _Plan(knot, self._stop_from(knot))
 
@@ -306,7 +308,10 @@ class MotionPlanner:
         else:
             duration, wanted = goal.path.duration, goal.path.goal.sample(elapsed).position
         actual = end_effector(
-            self._solver.model, odometry.position, odometry.quaternion, joints.position
+            self._solver.model,
+            odometry.position,
+            odometry.quaternion,
+            carried_by_rate(joints, stamp),
         )[0]
         return GoalFeedback(
             stamp=stamp,

@@ -4,7 +4,8 @@ import numpy as np
 
 from uvms_core.signals import Array, Odometry
 from uvms_dynamics import Model, coupling_wrench, restoring_wrench
-from uvms_dynamics.joint_prediction import JointMotion, jerk_of_velocity
+from uvms_dynamics.joint_filter import JointEstimate
+from uvms_dynamics.joint_prediction import jerk_of_velocity
 from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_dynamics.tracking import follow, transition, walk
 
@@ -28,7 +29,7 @@ class ModelParts:
         self._dt, self._F, self._Q = 0.0, np.eye(ORDER), np.zeros((2, ORDER, ORDER))
         self._begun = False
 
-    def step(self, model: Model, dt: float, odometry: Odometry, joints: JointMotion) -> Array:
+    def step(self, model: Model, dt: float, odometry: Odometry, joints: JointEstimate) -> Array:
         """Rows (3, 6): restoring, coupling, and coupling of a vehicle that does not accelerate.
 
         Args:
@@ -45,7 +46,7 @@ class ModelParts:
             self._Q = densities[:, None, None] * walk(ORDER, dt)
         return _parts(
             model, odometry.quaternion, odometry.nu, odometry.twist_covariance,
-            *joints, self._x, self._P, self._F, self._Q,
+            *joints[:3], self._x, self._P, self._F, self._Q,
         )  # fmt: skip
 
     @property

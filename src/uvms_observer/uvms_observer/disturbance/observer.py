@@ -19,7 +19,8 @@ from uvms_core.signals import (
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import Model, build_model, thruster_matrix
 from uvms_dynamics.external_bandwidth import external_bandwidth
-from uvms_dynamics.joint_prediction import JointMotion, JointPrediction, encoder_variances
+from uvms_dynamics.joint_filter import JointEstimate
+from uvms_dynamics.joint_prediction import JointPrediction, encoder_variances
 from uvms_dynamics.payload import COLUMNS, LoadedModel
 from uvms_dynamics.sensor_noise import sensor_noise
 from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
@@ -95,7 +96,7 @@ class ModelObserver:
         self,
         dt: float,
         odometry: Odometry,
-        motion: JointMotion,
+        motion: JointEstimate,
         effort: Array,
         achieved: Wrench | None,
     ) -> tuple[Array, Array]:
@@ -150,7 +151,7 @@ class DisturbanceObserver(ModelObserver):
         self,
         dt: float,
         odometry: Odometry,
-        motion: JointMotion,
+        motion: JointEstimate,
         effort: Array,
         achieved: Wrench | None,
     ) -> tuple[Array, Array]:

@@ -5,11 +5,11 @@ import pytest
 
 from uvms_control import ArmControlConfig
 from uvms_control.arm_gains import arm_gains
-from uvms_control.joint_observer import JointDrive, JointObserver
 from uvms_control.vehicle_data import effort_limits
 from uvms_core.signals import JointStates, to_nanoseconds
 from uvms_core.vehicle import load_vehicle
 from uvms_dynamics import build_model
+from uvms_dynamics.joint_filter import JointDrive, JointFilter, JointProcess
 from uvms_dynamics.joint_prediction import encoder_variances
 from uvms_dynamics.kernels import layout
 
@@ -27,11 +27,9 @@ def frictionless():
 
 
 def observer(model=None, variances=VARIANCES):
-    made = JointObserver(
-        frictionless() if model is None else model, EFFORT, 0.5 * EFFORT, variances
-    )
-    made.gains = arm_gains(VEHICLE, PERIOD, ArmControlConfig())
-    return made
+    gains = arm_gains(VEHICLE, PERIOD, ArmControlConfig())
+    process = JointProcess(gains.drift, gains.shake, EFFORT / gains.inertia)
+    return JointFilter(frictionless() if model is None else model, 0.5 * EFFORT, variances, process)
 
 
 def follow(watch, load, ticks, *, late=0, noise=None, push=None):
