@@ -41,19 +41,43 @@ _ASTRAY = (
 )
 
 HOW_WELL = (
-    Metric("end_effector_tracking_error_m.rms", "tool off its target, seen by the loop", "mm rms",
-           _MM),
-    Metric("end_effector_tracking_error_m.max", "tool off its target, seen by the loop, greatest", "mm", _MM),
+    Metric(
+        "end_effector_tracking_error_m.rms", "tool off its target, seen by the loop", "mm rms", _MM
+    ),
+    Metric(
+        "end_effector_tracking_error_m.max",
+        "tool off its target, seen by the loop, greatest",
+        "mm",
+        _MM,
+    ),
     Metric("end_effector_error_m.rms", "tool off its target, true", "mm rms", _MM),
-    Metric("end_effector_error_m.max", "tool off its target, true, greatest", "mm", _MM,
-           _MM * limits.END_EFFECTOR.near, f"within {_ASTRAY}"),
+    Metric(
+        "end_effector_error_m.max",
+        "tool off its target, true, greatest",
+        "mm",
+        _MM,
+        _MM * limits.END_EFFECTOR.near,
+        f"within {_ASTRAY}",
+    ),
     Metric("vehicle_error_m.rms", "vehicle off its reference, true", "mm rms", _MM),
-    Metric("vehicle_error_m.max", "vehicle off its reference, true, greatest", "mm", _MM, _MM * limits.VEHICLE.near,
-           f"within {_ASTRAY}"),
+    Metric(
+        "vehicle_error_m.max",
+        "vehicle off its reference, true, greatest",
+        "mm",
+        _MM,
+        _MM * limits.VEHICLE.near,
+        f"within {_ASTRAY}",
+    ),
     Metric("joint_error_deg.rms", "worst joint off its plan, true", "deg rms"),
-    Metric("joint_error_deg.max", "worst joint off its plan, true, greatest", "deg", 1.0, limits.JOINTS.near,
-           f"within for {limits.NEAR_SHARE:.0%} of the time at least; judged where the joints are"
-           " the goal"),
+    Metric(
+        "joint_error_deg.max",
+        "worst joint off its plan, true, greatest",
+        "deg",
+        1.0,
+        limits.JOINTS.near,
+        f"within for {limits.NEAR_SHARE:.0%} of the time at least; judged where the joints are"
+        " the goal",
+    ),
     Metric("navigation_error_m.rms", "position estimate off the truth", "mm rms", _MM),
     Metric("navigation_error_m.max", "position estimate off the truth, greatest", "mm", _MM),
     Metric("roll_deg.rms", "roll", "deg rms"),
@@ -62,57 +86,94 @@ HOW_WELL = (
     Metric("pitch_deg.max", "pitch, greatest", "deg", 1.0, ATTITUDE_DEG, "at any time"),
     Metric("yaw_error_deg.rms", "heading estimate off the truth", "deg rms"),
     Metric("clearance_m.min", "least clearance", "mm", _MM, None, "", "high"),
-)  # fmt: skip
+)
 
 DISTURBED = (
     Metric("self_disturbance.force_rms_n", "self-disturbance, force", "N rms"),
     Metric("self_disturbance.moment_rms_nm", "self-disturbance, moment", "N m rms"),
-    Metric("planned_disturbance_error.force_rms_n", "self-disturbance, true less planned, force", "N rms"),
-    Metric("planned_disturbance_error.moment_rms_nm", "self-disturbance, true less planned, moment",
-           "N m rms"),
+    Metric(
+        "planned_disturbance_error.force_rms_n",
+        "self-disturbance, true less planned, force",
+        "N rms",
+    ),
+    Metric(
+        "planned_disturbance_error.moment_rms_nm",
+        "self-disturbance, true less planned, moment",
+        "N m rms",
+    ),
     Metric("external.force_rms_n", "external force, true", "N rms", better=""),
     Metric("external.force_max_n", "external force, true, greatest", "N", better=""),
     Metric("external.moment_rms_nm", "external moment, true", "N m rms", better=""),
     Metric("external_observed.force_rms_n", "external force, observed", "N rms", better=""),
     Metric("external_observed.moment_rms_nm", "external moment, observed", "N m rms", better=""),
-)  # fmt: skip
+)
 
 COST = (
     Metric("thrust_rms_n", "thrust of a thruster", "N rms"),
     Metric("thrust_total_n", "all thrust, added up, mean", "N"),
     Metric("impulse_ns", "all thrust over the run", "N s"),
     Metric("authority_left", "least left to the busiest thruster", "%", _PERCENT, better="high"),
-    Metric("thruster_saturated_fraction", "ticks with a thruster at its limit", "%", _PERCENT,
-           _PERCENT * limits.SATURATED_SHARE,
-           f"and {limits.SATURATED_S:g} s at most without a break"),
+    Metric(
+        "thruster_saturated_fraction",
+        "ticks with a thruster at its limit",
+        "%",
+        _PERCENT,
+        _PERCENT * limits.SATURATED_SHARE,
+        f"and {limits.SATURATED_S:g} s at most without a break",
+    ),
     Metric("thruster_work_j", "mechanical work of the thrusters on the vehicle", "J"),
-    Metric("torque_share", "greatest torque of a joint over its limit", "%", _PERCENT,
-           _PERCENT, "the drive's"),
+    Metric(
+        "torque_share",
+        "greatest torque of a joint over its limit",
+        "%",
+        _PERCENT,
+        _PERCENT,
+        "the drive's",
+    ),
     Metric("arm_work_j", "mechanical work of the joints", "J"),
-)  # fmt: skip
+)
 
 HEALTH = (
-    Metric("navigation_within", "position error within the filter's 3 σ, all axes", "%", _PERCENT,
-           better="high"),
-    Metric("navigation_nees", "squared position error over its covariance, per axis; 1 is right",
-           "1", better=""),
+    Metric(
+        "navigation_within",
+        "position error within the filter's 3 σ, all axes",
+        "%",
+        _PERCENT,
+        better="high",
+    ),
+    Metric(
+        "navigation_nees",
+        "squared position error over its covariance, per axis; 1 is right",
+        "1",
+        better="",
+    ),
     Metric("planner_step_ms.p50", "planner's step, median", "ms"),
     Metric("planner_step_ms.p99", "planner's step, 99th percentile", "ms"),
     Metric("lockstep_timeouts", "ticks that the plant did not wait for", "ticks"),
     Metric("command_age_s", "oldest command that the plant used", "ms", _MM),
     Metric("safe_ticks", "ticks without a usable command (the first one has none)", "ticks"),
     Metric("real_time_factor", "simulated by wall time", "×", better="high"),
-)  # fmt: skip
+)
 
 STABLE = (
-    Metric("stability.condition_holds", "ticks in which the condition below (29) holds", "%",
-           _PERCENT, better="high"),
-    Metric("stability.lyapunov_falls", "ticks in which V does not grow, by the model", "%",
-           _PERCENT, better="high"),
+    Metric(
+        "stability.condition_holds",
+        "ticks in which the condition below (29) holds",
+        "%",
+        _PERCENT,
+        better="high",
+    ),
+    Metric(
+        "stability.lyapunov_falls",
+        "ticks in which V does not grow, by the model",
+        "%",
+        _PERCENT,
+        better="high",
+    ),
     Metric("stability.lyapunov_rms", "V", "m²/s², rad²/s², rms"),
     Metric("stability.lyapunov_max", "V, greatest", "m²/s², rad²/s²"),
     Metric("stability.lyapunov_end", "V at the end, greatest of 5 s", "m²/s², rad²/s²"),
-)  # fmt: skip
+)
 
 CARDS = (
     ("end_effector_tracking_error_m.rms", "end_effector_tracking_error_m.max"),
