@@ -22,17 +22,21 @@ def load_shares(run: Analysis) -> Array:
     Raises:
         LogError: the log lacks allocation or vehicle, or they do not fit together.
     """
-    thrust, items = run.allocation.thrust, run.vehicle.thrusters
-    if thrust.shape[1:] != (len(items),):
-        raise LogError(f"{thrust.shape[1]} thrusts are allocated to {len(items)} thrusters")
-    return np.abs(thrust) / np.where(thrust >= 0.0, *_bounds(items))
+    return shares(run.allocation.thrust, run.vehicle.thrusters)
 
 
-def _bounds(items: Sequence[Thruster]) -> tuple[Array, Array]:
-    """Greatest thrust ahead and astern, N; one that cannot reverse is never asked to."""
-    ahead = np.array([item.ahead_n for item in items])
-    astern = np.array([-item.astern_n for item in items])
-    return ahead, np.where(astern > 0.0, astern, ahead)
+def shares(thrust: Array, thrusters: Sequence[Thruster]) -> Array:
+    """Thrusts (k, m) in N over what each thruster can give in that direction.
+
+    Raises:
+        LogError: there are others than m thrusters.
+    """
+    if thrust.shape[1:] != (len(thrusters),):
+        raise LogError(f"{thrust.shape[1]} thrusts are allocated to {len(thrusters)} thrusters")
+    ahead = np.array([item.ahead_n for item in thrusters])
+    astern = np.array([-item.astern_n for item in thrusters])
+    # One that cannot reverse is never asked to.
+    return np.abs(thrust) / np.where(thrust >= 0.0, ahead, np.where(astern > 0.0, astern, ahead))
 
 
 def authority_left(run: Analysis) -> Array:

@@ -15,8 +15,6 @@ from uvms_analysis.report.run import ReportedRun
 from uvms_analysis.report.shown import Shown, show
 
 PAGE = "compare.html"
-ALIKE = 1e-9
-"""Relative; figures that are so near are the same."""
 
 
 def write_page(
@@ -105,7 +103,8 @@ def best_of(
 
 
 def _are_alike(one: float, two: float) -> bool:
-    return abs(one - two) <= ALIKE * max(abs(one), abs(two))
+    """Whether the page shows the same number for both."""
+    return number(one) == number(two)
 
 
 def _difference(value: float, first: float) -> str:
