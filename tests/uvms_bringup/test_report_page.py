@@ -43,14 +43,11 @@ COLOURS = """(() => {
 })()"""
 CONTROLS = """[...document.querySelectorAll("a, button, input, [tabindex='0']")]
   .filter((e) => e.checkVisibility())"""
-FOCUSED = (
-    """(() => {
+FOCUSED = f"""(() => {{
   const e = document.activeElement, style = getComputedStyle(e);
-  const all = %s;
+  const all = {CONTROLS};
   return [all.indexOf(e), style.outlineStyle, parseFloat(style.outlineWidth)];
-})()"""
-    % CONTROLS
-)  # noqa: UP031
+}})()"""
 
 
 @pytest.fixture(scope="module")
@@ -177,7 +174,7 @@ def test_the_cursor_says_time_and_values_by_keyboard_and_zooms(tab, run):
     assert tab.evaluate("document.getElementById('now').textContent") == "cursor at 2.00 s"
     shown = tab.evaluate("document.querySelector('#plot-roll .legend output').textContent")
     assert float(shown.removesuffix(" deg")) == pytest.approx(roll[40], rel=1e-3)
-    window = "[Number(document.getElementById('from').value), Number(document.getElementById('to').value)]"
+    window = "['from', 'to'].map((id) => Number(document.getElementById(id).value))"
     whole = tab.evaluate(window)
     tab.key("+", 187, "+")
     assert tab.evaluate(window) == pytest.approx([1.0, 3.0], abs=0.1)
@@ -185,6 +182,9 @@ def test_the_cursor_says_time_and_values_by_keyboard_and_zooms(tab, run):
     tab.wait(lambda: np.allclose(tab.evaluate(scale), [1.0, 3.0], atol=0.1), "the others follow")
     tab.key("Home", HOME)
     assert tab.evaluate(window) == whole
+    scale = "(() => {const s = report.figures.get('lyapunov').u.scales.y; return [s.min, s.max]})()"
+    low, high = tab.evaluate(scale)
+    assert 0.0 < low < high
 
 
 def test_lines_are_hidden_by_their_buttons(tab):
@@ -235,8 +235,9 @@ def test_paper_is_light_and_has_pages(tab):
 
 
 def test_the_run_is_seen_in_3d(tab):
-    tab.evaluate("document.getElementById('open-scene').scrollIntoView()")
+    tab.evaluate("document.getElementById('open-scene').scrollIntoView({block: 'center'})")
     tab.press("Show the run in 3-D")
+    tab.wait(lambda: tab.evaluate("!!document.querySelector('.scene iframe')"), "the frame")
 
     def vehicle():
         red, green, blue = (tab.picture()[..., n].astype(int) for n in range(3))

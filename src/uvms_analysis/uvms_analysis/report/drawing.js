@@ -44,9 +44,12 @@ const drawing = (() => {
   function range(u, plot, say) {
     const found = shownValues(u).sort((a, b) => a - b);
     say("");
-    if (!found.length) return [0, 1];
+    if (!found.length) return [plot.log ? 0.1 : 0, 1];
     let low = found[0], high = found[found.length - 1];
-    if (plot.log) return [low / 2, high * 2];
+    if (plot.log) {  // whole decades: uPlot does not find the ticks of others
+      const lowest = Math.floor(Math.log10(low));
+      return [10 ** lowest, 10 ** Math.max(Math.ceil(Math.log10(high)), lowest + 1)];
+    }
     if (plot.peaks && found.length > 100) {
       const part = (share) => found[Math.floor(share * (found.length - 1))];
       const inner = Math.max(part(0.997) - part(0.003), plot.least);
