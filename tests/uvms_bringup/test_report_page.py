@@ -102,7 +102,8 @@ def test_the_measure_of_contrast_is_that_of_the_standard():
 @pytest.mark.parametrize("width", WIDTHS)
 def test_nothing_is_cut_off_or_beyond_the_page(tab, width):
     tab.width(width)
-    settled = f"Math.abs(document.querySelector('.canvas .uplot').clientWidth - {width}) < {width}"
+    settled = """[...report.figures.values()].every(({u, element}) =>
+      u.width === element.querySelector(".canvas").clientWidth)"""
     tab.wait(lambda: tab.evaluate(settled), "the plots in their new size")
     tab.wait(lambda: tab.evaluate(CUT_OFF) == [], f"nothing cut off: {tab.evaluate(CUT_OFF)}")
     assert tab.evaluate("document.documentElement.scrollWidth") <= width
@@ -235,17 +236,20 @@ def test_paper_is_light_and_has_pages(tab):
 
 
 def test_the_run_is_seen_in_3d(tab):
-    tab.evaluate("document.getElementById('open-scene').scrollIntoView({block: 'center'})")
-    tab.press("Show the run in 3-D")
-    tab.wait(lambda: tab.evaluate("!!document.querySelector('.scene iframe')"), "the frame")
+    """In a small window, as it is drawn without a graphics card here."""
+    tab.width(640, 520)
+    tab.evaluate("document.getElementById('open-scene').click()")
+    frame = "document.querySelector('.scene iframe')"
+    assert tab.evaluate(f"{frame}.title") == "The run in 3-D"
+    tab.evaluate(f"{frame}.scrollIntoView({{block: 'end'}})")
+    top = int(tab.evaluate(f"{frame}.getBoundingClientRect().top")) + 3
 
-    def vehicle():
-        red, green, blue = (tab.picture()[..., n].astype(int) for n in range(3))
-        return ((red - blue > 60) & (green - blue > 30) & (red >= green)).sum() > MANY
+    def hull():
+        """Yellow: the notices of the page are orange."""
+        red, green, blue = (tab.picture()[top:, :, n].astype(float) for n in range(3))
+        return ((red - blue > 60) & (green > 0.62 * red) & (red >= green)).sum() > MANY
 
-    tab.evaluate("document.querySelector('.scene').scrollIntoView()")
-    assert tab.evaluate("document.querySelector('.scene iframe').title") == "The run in 3-D"
-    tab.wait(vehicle, "a vehicle in the 3-D view")
+    tab.wait(hull, "a vehicle in the 3-D view")
 
 
 def test_several_runs_come_on_one_page(run, browser, tmp_path, capsys):
