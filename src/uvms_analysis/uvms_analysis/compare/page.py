@@ -58,7 +58,7 @@ def _question(
     question: Question, runs: Sequence[ReportedRun], facts: Sequence[Facts], shown: Shown
 ) -> str:
     head = ("figure", *(run.name for run in runs))
-    rows = [(f"{metric.name}, {metric.unit}", *_cells(metric, runs, facts))
+    rows = [(", ".join(filter(None, (metric.name, metric.unit))), *_cells(metric, runs, facts))
             for metric in question.metrics]  # fmt: skip
     return (
         f'<section id="{question.key}"><h2>{escaped(question.title)}</h2>'

@@ -144,7 +144,7 @@ HEALTH = (
     Metric(
         "navigation_nees",
         "squared position error over its covariance, per axis; 1 is right",
-        "1",
+        "",
         better="",
     ),
     Metric("planner_step_ms.p50", "planner's step, median", "ms"),

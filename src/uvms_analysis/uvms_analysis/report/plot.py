@@ -38,7 +38,7 @@ class Limit:
 
 @dataclass(frozen=True)
 class Panel:
-    """One quantity over time.
+    """One quantity over time; `unit` is empty where it has none.
 
     `least` is the smallest span of the vertical axis, so that noise does not look like motion;
     `peaks` may lie outside of it where they would dwarf the rest, which the page then says.

@@ -75,14 +75,17 @@ def _below(metric: Metric, facts: Facts) -> str:
 
 def figures(metrics: Sequence[Metric], facts: Facts) -> str:
     """The figures of a question, each with its unit, and its limit where it has one."""
-    rows = [(metric.name, _value(metric, facts), _limit(metric, facts)) for metric in metrics]
-    return table(("figure", "value", "limit"), rows, kind="figures")
+    if not any(metric.limit for metric in metrics):
+        rows = [(metric.name, _value(metric, facts)) for metric in metrics]
+        return table(("figure", "value"), rows, kind="figures")
+    limited = [(metric.name, _value(metric, facts), _limit(metric, facts)) for metric in metrics]
+    return table(("figure", "value", "limit"), limited, kind="figures")
 
 
 def _value(metric: Metric, facts: Facts) -> Cell:
     value = metric.value(facts.values)
     if value is not None:
-        return f"{number(value)} {metric.unit}"
+        return f"{number(value)} {metric.unit}".strip()
     reason = facts.why_not(metric.key) or "not in the log"
     return Raw(f'<span class="missing">missing: {escaped(reason)}</span>')
 
@@ -120,7 +123,8 @@ def _panel(panel: PanelShown) -> str:
     remarks = "".join(f'<p class="lack">not shown: {escaped(text)}</p>' for text in panel.notes)
     return (
         f'<figure class="panel" id="plot-{escaped(panel.key)}" data-plot="{escaped(panel.key)}">'
-        f"<figcaption>{escaped(panel.title)} <span>({escaped(panel.unit)})</span></figcaption>"
+        f"<figcaption>{escaped(panel.title)} <span>({escaped(panel.unit or 'no unit')})</span>"
+        "</figcaption>"
         f'<div class="canvas" tabindex="0" role="img" aria-label="{escaped(panel.description)}">'
         f'</div><div class="legend"></div><p class="peaks" hidden></p>{remarks}</figure>'
     )

@@ -137,4 +137,4 @@ def _range(line: Line, unit: str) -> str:
     values = line.values[np.isfinite(line.values)]
     if not len(values):
         return f"{line.name}: no values"
-    return f"{line.name}: from {values.min():.4g} to {values.max():.4g} {unit}"
+    return f"{line.name}: from {values.min():.4g} to {values.max():.4g} {unit}".strip()

@@ -61,7 +61,7 @@ def consistency(run: ReportedRun) -> list[Panel]:
         partial(panel, "navigation_sigma", "standard deviation of the position, by the filter",
                 "mm", [Part("σ", deviation)], least=1.0),
         partial(panel, "navigation_nees", "squared position error over its covariance, per axis",
-                "1", [Part("NEES / 3", lambda: normalized_error(run.truth))],
+                "", [Part("NEES / 3", lambda: normalized_error(run.truth))],
                 [Limit("expected", 1.0)], least=2.0),
         partial(_levels, run),
     ]  # fmt: skip
@@ -84,7 +84,7 @@ def _levels(run: ReportedRun) -> Panel:
         return time, np.array([one.number(sensor + LEVEL) for one in statuses])
 
     parts = [Part(sensor, partial(level, sensor)) for sensor in sensors]
-    return panel("navigation_nis", "residuals of the sensors, NIS per dimension", "1", parts,
+    return panel("navigation_nis", "residuals of the sensors, NIS per dimension", "", parts,
                  [Limit("expected", 1.0)], least=1.0)  # fmt: skip
 
 
