@@ -2,6 +2,7 @@
 
 import base64
 import json
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -58,10 +59,18 @@ def write_page(
     """Write the page about a run and return its path; without `shown` it has no plots."""
     run = ReportedRun(log.path.stem, log, summary)
     shown = shown or Shown()
-    marks = [{"time": event["at_s"], "text": event["text"]} for event in summary["events"] or ()]
-    data = shown.data(marks)
+    data = shown.data(_marks(summary))
     body = "".join((*_body(run, shown, pictures), embedded(data, pictures.scene)))
     return write(path, document(run.title, body, [("did-it-work", "Did it work?"), *links()]))
+
+
+def _marks(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Events whose time is known; JSON has no NaN."""
+    return [
+        {"time": event["at_s"], "text": event["text"]}
+        for event in summary["events"] or ()
+        if math.isfinite(event["at_s"])
+    ]
 
 
 def _body(run: ReportedRun, shown: Shown, pictures: Pictures) -> Sequence[str]:
@@ -154,7 +163,7 @@ def embedded(data: Mapping[str, Any], scene: str | None = None) -> str:
 
 def as_script(values: Any) -> str:
     """JSON that cannot end the element that it stands in."""
-    return json.dumps(values, separators=(",", ":")).replace("<", "\\u003c")
+    return json.dumps(values, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
 
 
 def document(title: str, body: str, anchors: Sequence[tuple[str, str]]) -> str:

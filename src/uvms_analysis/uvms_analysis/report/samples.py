@@ -51,7 +51,8 @@ def kept(values: Array, points: int = POINTS) -> NDArray[np.intp]:
 
 def encoded(values: NDArray[Any], kind: str) -> str:
     """Numbers as base64 of little-endian bytes: `f4`, `f8`, `u2`, `u4` as numpy names them."""
-    return base64.b64encode(np.asarray(values).astype(f"<{kind}").tobytes()).decode()
+    with np.errstate(over="ignore"):  # beyond 32 bits: infinite, which the page does not draw
+        return base64.b64encode(np.asarray(values).astype(f"<{kind}").tobytes()).decode()
 
 
 class Times:
