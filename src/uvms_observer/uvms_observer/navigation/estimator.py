@@ -11,7 +11,7 @@ from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
 from uvms_observer.navigation import consistency, undecided
 from uvms_observer.navigation.alignment import aligned, levelled
-from uvms_observer.navigation.imu_screen import ImuScreen, ScreenMemory, remember
+from uvms_observer.navigation.imu_screen import ImuScreen, Jump, ScreenMemory, Trend, remember, still
 from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation
@@ -36,6 +36,9 @@ LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 MOST = np.repeat([np.radians(1.0), 0.1], 3)
 """Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
 vehicle that was pushed."""
+KNOCK_M = 0.02
+"""Change of velocity by a knock that falls between two readings, m/s, for each rad/s by which the
+rate has changed: the arm about which it turns the unit, less what the readings have of it."""
 SETTLED = to_nanoseconds(1.0)
 """After an unusual reading of the inertial unit, before the estimate is itself again."""
 
@@ -74,10 +77,12 @@ class Estimator:
         self._heading: Reading | None = None  # last one before the start
         self._rate = np.zeros(3)  # last readings of the IMU that are believed
         self._force = np.zeros(3)
+        self._now = self._rate, self._force  # what it would read at the estimator's time
         self._inertial = 0  # ns, stamp of the last IMU sample
         self._sample: ImuSample | None = None  # that sample
-        self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise)
-        self._memory: ScreenMemory = remember(self._rate, self._force)
+        self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise, imu.period)
+        self._memory: ScreenMemory = remember(still(self._rate, self._force))
+        self._before = self._rate, self._force, 1.0  # readings before the last, s between them
         self._unusual = -SETTLED  # ns, stamp of the last of them that was held back or unlikely
 
     def copied(self) -> "Estimator":
@@ -117,11 +122,18 @@ class Estimator:
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
-            self._correct(reading)
+            needs_rate = self._measurements[reading.name].needs_rate
+            if not needs_rate or self._screen.knows_rate(self._memory):
+                self._correct(reading)
 
     def advance(self, stamp: int) -> None:
-        """Carry the state to the stamp with the last inertial readings."""
-        self._propagate(stamp, self._rate, self._force)
+        """Carry the state to the stamp with what the inertial unit would read there."""
+        if self.time is None or stamp <= self.time:
+            return
+        rate, force = self._rate, self._force
+        if not self._memory.row:
+            rate, force = self._screen.ahead(self._trend(), to_seconds(stamp - self._inertial))
+        self._propagate(stamp, rate, force)
 
     def odometry(self) -> Odometry:
         """The estimate at the body origin, at the present time."""
@@ -132,7 +144,7 @@ class Estimator:
             state = state if wider is None else state._replace(covariance=wider)
         if beyond := self.inconsistent():
             state = state._replace(covariance=max(beyond.values()) * state.covariance)
-        return odometry(self.time or 0, state, imu.body, self._rate, imu.rate_variance)
+        return odometry(self.time or 0, state, imu.body, self._now[0], imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
         imu = self._imu
@@ -152,7 +164,9 @@ class Estimator:
         self.time = self._inertial = sample.stamp
         self._sample = sample
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
-        self._memory = remember(self._rate, self._force)
+        self._now = self._rate, self._force
+        self._memory = remember(still(self._rate, self._force))
+        self._before = self._rate, self._force, 1.0
 
     def _take_at_once(self, reading: Reading) -> bool:
         """Carry and correct in the usual case; False, and nothing done, where it is another."""
@@ -165,10 +179,11 @@ class Estimator:
             return False
         rate_limit, force_limit = self._screen.limits(gone)
         rate, force = sample.angular_velocity, sample.linear_acceleration
+        rate_now, force_now = self._now
         distance, mean = take_inertial(
             tuple(self.state),
-            *(self._rate, rate, rate_limit),
-            *(self._force, force, force_limit),
+            *(rate_now, rate, rate_limit),
+            *(force_now, force, force_limit),
             to_seconds(reading.stamp - time),
             imu.gravity,
             *imu.process,
@@ -177,7 +192,9 @@ class Estimator:
         if distance == UNUSUAL:
             return False
         self.time, self._inertial = max(time, reading.stamp), reading.stamp
+        self._before = self._rate, self._force, gone
         self._rate, self._force, self._sample = rate, force, sample
+        self._now = rate, force
         if distance <= gate.limit:
             self.tallies[reading.name] = gate.accepted(tally, reading.stamp, distance, mean)
         else:
@@ -188,22 +205,38 @@ class Estimator:
         """With the readings at both ends of the interval: second order in its length."""
         dt = to_seconds(sample.stamp - self._inertial)
         if not self._memory.row:
-            self._memory = remember(self._rate, self._force, self._memory.held)
+            self._memory = remember(self._trend(), self._memory.held)
         screened, self._memory = self._screen.judge(
             self._memory, sample.angular_velocity, sample.linear_acceleration, dt
         )
         if screened.turn is not None:
             self._unusual = sample.stamp
+        if screened.jump is not None:
+            self._now = screened.jump.before.rate, screened.jump.before.force
         self._propagate(sample.stamp, screened.rate, screened.force)
         self._rate, self._force, self._inertial = screened.rate, screened.force, sample.stamp
         self._sample = sample
         if screened.turn is not None and screened.change is not None:
             spread(tuple(self.state), screened.turn, screened.change, dt)
-        if screened.owed is not None:
-            change_velocity(tuple(self.state), screened.owed)
-        if screened.step is not None:
-            doubt = np.square(np.clip(np.concatenate(screened.step), -MOST, MOST))
+        if screened.jump is not None:
+            self._make_up_for(screened.jump, dt)
+
+    def _make_up_for(self, jump: Jump, dt: float) -> None:
+        """What readings that were held back would have changed, and what they do not say."""
+        change_velocity(tuple(self.state), jump.owed)
+        unseen = KNOCK_M * float(np.linalg.norm(jump.rate))
+        spread(tuple(self.state), np.zeros(3), np.full(3, unseen), dt)
+        if jump.stays:
+            step = np.concatenate((jump.rate, jump.force))
+            doubt = np.square(np.clip(step, -MOST, MOST))
             self.state.covariance[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(doubt)
+
+    def _trend(self) -> Trend:
+        """The last reading that is believed, and how fast it changes."""
+        if self._memory.good.rate is self._rate:
+            return self._memory.good
+        rate, force, gone = self._before  # the last one was taken at once
+        return still(rate, force).to(self._rate, self._force, gone)
 
     def _propagate(self, stamp: int, rate: Array, force: Array) -> None:
         """To the stamp, at which the inertial unit reads this."""
@@ -211,7 +244,8 @@ class Estimator:
             return
         begin, self.time, imu = self.time, stamp, self._imu
         dt = to_seconds(stamp - begin)
-        readings = self._rate, rate, self._force, force
+        (rate_now, force_now), self._now = self._now, (rate, force)
+        readings = rate_now, rate, force_now, force
         propagate(tuple(self.state), *readings, dt, imu.gravity, *imu.process)
         if (gone := to_seconds(stamp - self._inertial)) > GAP * imu.period:
             unknown = gap_spread(to_seconds(begin - self._inertial), gone, imu.gravity)
@@ -274,7 +308,7 @@ class Estimator:
     def _correct(self, reading: Reading) -> None:
         name = reading.name
         update = self._measurements[name].correct
-        correct = partial(update, self.state, reading.sample, self._rate)
+        correct = partial(update, self.state, reading.sample, self._now[0])
         tally = self._gates[name].apply(
             self.tallies[name], reading.stamp, correct, self.state.innovation
         )
@@ -287,7 +321,7 @@ class Estimator:
     def _reject(self, reading: Reading, tally: Tally) -> None:
         """Keep the tally of a sample that is not used, and what it would have changed."""
         name, other = reading.name, undecided.believed(self.state)
-        self._measurements[name].correct(other, reading.sample, self._rate, np.inf)
+        self._measurements[name].correct(other, reading.sample, self._now[0], np.inf)
         before, self.tallies[name] = self._doubts.get(name), tally
         self._doubts[name] = undecided.doubt(self.state, other, tally, before, reading.stamp)
         self._forget_jumps_of_its_own(reading.stamp)

@@ -26,6 +26,8 @@ class Measurement(ABC):
 
     size: ClassVar[int]
     """Dimension of the measurement."""
+    needs_rate: ClassVar[bool] = False
+    """Whether `correct` uses the rate; it is not asked while the rate is not known."""
 
     def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
         imu = vehicle.sensors.imu

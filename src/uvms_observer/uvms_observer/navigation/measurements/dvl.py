@@ -37,6 +37,7 @@ class DvlVelocity(Measurement):
     """
 
     size = 3
+    needs_rate = True
 
     def __init__(self, vehicle: Vehicle, section: Dvl, config: NavigationConfig) -> None:
         super().__init__(vehicle, section, config)
