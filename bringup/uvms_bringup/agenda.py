@@ -57,6 +57,11 @@ class Agenda:
         """How many goals have begun."""
         return sum(record.began_s is not None for record in self._records)
 
+    @property
+    def remaining(self) -> int:
+        """How many goals are still to begin."""
+        return max(len(self._goals) - self._index - self.active, 0)
+
     def begin(self, stamp: int) -> None:
         """The planner has accepted the goal that was due, at this stamp in ns."""
         record = self._records[self._index]

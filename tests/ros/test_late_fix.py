@@ -3,6 +3,10 @@
 import yaml
 from graph import finished, uvms
 
+from uvms_analysis.log.compare import compare
+from uvms_analysis.log.read import RunLog
+from uvms_core import topics
+
 SCENARIO = {
     "scenario": "late_fix",
     "duration_s": 25.0,
@@ -26,3 +30,34 @@ def test_the_run_goes_on_until_there_is_a_fix_and_then_does_its_goals(tmp_path):
     assert [goal["state"] for goal in summary["goals"]] == ["succeeded", "succeeded"]
     assert summary["goals"][0]["began_s"] >= 3.0  # GPS comes at whole seconds
     assert summary["navigation_error_m"]["max"] < 0.1
+
+
+def test_navigation_answers_in_a_replay_as_it_did(tmp_path):
+    """Nobody waits for an odometry that there was not."""
+    scenario = SCENARIO | {"duration_s": 10.0, "goals": SCENARIO["goals"][:1]}
+    file = tmp_path / "late_fix.yaml"
+    file.write_text(yaml.safe_dump(scenario), encoding="utf-8")
+    late = finished(uvms(tmp_path / "run", "simulate", str(file)))
+    log, again = str(late.folder / "run.mcap"), tmp_path / "again"
+    outcome = finished(uvms(again, "replay", log, "--into", "navigation"))
+    assert "0 unanswered" in outcome.out
+    (difference,) = compare(late.log, RunLog.open(again / "replay.mcap"), [topics.ODOMETRY])
+    assert difference.recorded == difference.replayed == difference.common > 100, difference
+    assert difference.greatest == 0.0, difference
+
+
+def test_in_real_time_the_vehicle_drifts_until_there_is_a_fix_and_the_run_is_valid(tmp_path):
+    """No odometry, no wrench and no torque before it; the goal begins then."""
+    scenario = SCENARIO | {"duration_s": 10.0, "goals": SCENARIO["goals"][:1]}
+    file = tmp_path / "late_fix.yaml"
+    file.write_text(yaml.safe_dump(scenario), encoding="utf-8")
+    arguments = ("run", str(file), "--composed", "--pace", "realtime")
+    outcome = finished(uvms(tmp_path / "run", *arguments))
+    log = outcome.log
+    known = log.signals(topics.ODOMETRY)[0].stamp
+    assert known >= 3_000_000_000
+    assert log.signals(topics.REFERENCE)[0].stamp >= known
+    early = [each for each in log.signals(topics.THRUSTER_COMMAND) if each.stamp < known]
+    assert not any(each.thrust.any() for each in early)
+    assert outcome.summary["goals"][0]["state"] == "succeeded"
+    assert outcome.summary["goals"][0]["began_s"] >= 3.0

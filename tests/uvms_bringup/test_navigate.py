@@ -12,7 +12,7 @@ from uvms_analysis.log.read import RunLog
 from uvms_bringup.cli import main
 from uvms_bringup.navigate.against_reference import Track, at, errors, read_track
 from uvms_bringup.navigate.bag import open_bag
-from uvms_bringup.navigate.feed import ClockError
+from uvms_bringup.navigate.clocks import ClockError
 from uvms_bringup.navigate.navigate import navigate
 from uvms_core import topics
 from uvms_core.cdr import codec

@@ -18,9 +18,10 @@ def random_state(seed):
     rng = np.random.default_rng(seed)
     root = SCALES[:, None] * rng.standard_normal((SIZE, SIZE)) / np.sqrt(SIZE)
     tilt = np.array([rng.uniform(-3, 3), *rng.uniform(-0.5, 0.5, 2)])
+    velocity = rng.standard_normal(3)
     return NavigationState(
         10.0 * rng.standard_normal(3),
-        rng.standard_normal(3),
+        velocity,
         Rotation.from_euler("ZYX", tilt).as_quat(),
         0.01 * rng.standard_normal(3),
         0.1 * rng.standard_normal(3),
@@ -28,6 +29,7 @@ def random_state(seed):
         0.01 * rng.standard_normal(SIZE - FURTHER),
         root @ root.T,
         np.zeros((3, WIDEST)),
+        velocity.copy(),
     )
 
 

@@ -18,6 +18,7 @@ from uvms_observer.navigation.state import (
     ATTITUDE,
     COMPASS_BIAS,
     DVL_MISALIGNMENT,
+    DVL_SCALE,
     FURTHER,
     GYRO_BIAS,
     POSITION,
@@ -42,6 +43,7 @@ def plus(state: NavigationState, e: Array) -> NavigationState:
         state.further + e[FURTHER:],
         state.covariance,
         state.innovation,
+        state.reference,
     )
 
 
@@ -75,6 +77,7 @@ def propagated_mean(
         phi[9:] * state.further,
         state.covariance,
         state.innovation,
+        state.reference,
     )
 
 
@@ -125,21 +128,14 @@ def propagated(
     return mean._replace(covariance=covariance)
 
 
-def conditional(P: Array) -> Array:
-    """Covariance (SIZE, SIZE) of the other states where the DVL's misalignment is known."""
-    m = slice(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3)
-    known = P - P[:, m] @ np.linalg.inv(P[m, m]) @ P[m]
-    known[m], known[:, m] = 0.0, 0.0
-    return known
-
-
 def corrected(
     state: NavigationState, H: Array, residual: Array, N: Array, is_fix: bool
 ) -> NavigationState:
-    """State and covariance after one measurement, Joseph form."""
+    """State and covariance after one measurement, Joseph form; only fixes tell of the mounting."""
     P = state.covariance
-    known = P if is_fix else conditional(P)
-    K = known @ H.T @ np.linalg.inv(H @ known @ H.T + N)
+    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + N)
+    if not is_fix:
+        K[DVL_SCALE], K[DVL_MISALIGNMENT : DVL_MISALIGNMENT + 3] = 0.0, 0.0
     left = np.eye(SIZE) - K @ H
     covariance = left @ P @ left.T + K @ N @ K.T
     return plus(state, K @ residual)._replace(covariance=covariance)

@@ -7,6 +7,7 @@ the places where the sensors sit.
 from dataclasses import dataclass, field
 
 import numpy as np
+from scipy.signal import lfilter
 from scipy.spatial.transform import Rotation
 
 from uvms_core.geodesy import ned_to_geodetic
@@ -88,6 +89,7 @@ class Rig:
     surface: bool = False
     misalignment_deg: float = 0.0  # std of the DVL's mounting about each axis
     rng: np.random.Generator = field(init=False)
+    sigmas: np.ndarray = field(init=False)  # of the biases that wander
     biases: np.ndarray = field(init=False)  # gyro, accelerometer, compass; DVL scale, pressure
 
     def __post_init__(self):
@@ -100,14 +102,16 @@ class Rig:
         turn = np.random.default_rng([self.seed, 7]).standard_normal(3)
         self.mount = Rotation.from_rotvec(np.radians(self.misalignment_deg) * turn)
         self.biases = self.bias * np.array(sigmas) * self.rng.standard_normal(11)
+        self.sigmas = self.bias * np.array(sigmas[:9])
 
     def white(self, sigma, *shape):
         return self.noise * sigma * self.rng.standard_normal(shape)
 
     def imu(self, t):
-        """Samples at these times; the biases stay as they are over a short run."""
-        imu, (gyro, force, compass) = self.vehicle.sensors.imu, self.biases[:9].reshape(3, 3)
-        n, lever = len(t), imu.position_m
+        """Samples at these times, evenly spaced."""
+        imu, n = self.vehicle.sensors.imu, len(t)
+        gyro, force, compass = np.split(self.wandering(t), 3, axis=1)
+        lever = imu.position_m
         tilt, heading = np.radians([imu.roll_pitch_noise_deg, imu.heading_noise_deg])
         turns = compass + self.white(np.array([tilt, tilt, heading]), n, 3)
         quaternions = (self.motion.rotation(t) * Rotation.from_rotvec(turns)).as_quat()
@@ -116,6 +120,21 @@ class Rig:
         forces = forces + force + self.white(imu.accelerometer_noise_m_s2, n, 3)
         rows = zip(t, quaternions, rates, forces, strict=True)
         return [ImuSample(to_nanoseconds(s), q, w, f, NONE, NONE, NONE) for s, q, w, f in rows]
+
+    def wandering(self, t):
+        """The inertial unit's biases (len(t), 9): first-order Gauss-Markov; `biases` is the last.
+
+        By the exact step of the process: x' = phi x + sqrt(1 - phi^2) sigma n.
+        """
+        if len(t) < 2:
+            return np.tile(self.biases[:9], (len(t), 1))
+        phi = np.exp(-(t[1] - t[0]) / self.vehicle.sensors.imu.bias_time_constant_s)
+        steps = np.random.default_rng([self.seed, 9]).standard_normal((len(t), 9))
+        steps *= np.sqrt(1.0 - phi**2) * self.sigmas
+        steps[0] = self.biases[:9]
+        path = lfilter([1.0], [1.0, -phi], steps, axis=0)
+        self.biases[:9] = path[-1]
+        return path
 
     def dvl(self, t):
         dvl = self.vehicle.sensors.dvl

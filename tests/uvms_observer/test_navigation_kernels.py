@@ -130,7 +130,9 @@ def test_many_corrections_keep_the_covariance_symmetric_and_positive(seed):
     for _ in range(300):
         propagate(state, RATE, RATE, FORCE, FORCE, 0.01, G, *NOISE)
         imu.correct_attitude(state, state.quaternion.copy(), np.full(3, 1e-10), OPEN)
-        dvl.correct_velocity(state, rng.standard_normal(3), 1e-8, LEVER, RATE, 0.0, False, OPEN)
+        expected = dvl.velocity(state, LEVER, RATE, False)[0]
+        measured = expected + 1e-4 * rng.standard_normal(3)
+        dvl.correct_velocity(state, measured, 1e-8, LEVER, RATE, 0.0, False, OPEN)
         pressure.correct_depth(state, 1.0, 1e-8, LEVER, OPEN)
         np.testing.assert_array_equal(state.covariance, state.covariance.T)
     assert np.linalg.eigvalsh(state.covariance).min() > -1e-15
@@ -143,3 +145,20 @@ def test_gyro_noise_enters_by_the_lever_arm_of_the_dvl():
     near = dvl.correct_velocity(quiet, measured, 1e-4, LEVER, RATE, 0.0, False, OPEN)
     far = dvl.correct_velocity(noisy, measured, 1e-4, LEVER, RATE, 1e-2, False, OPEN)
     assert far < near
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_a_correction_keeps_what_the_dvl_has_told_of_its_reading(seed):
+    """The reading's error after a correction, linearized where the state is then, has the
+    covariance that the correction has left; only the shares of its parts are taken anew."""
+    state = random_state(seed)
+    measured = dvl.velocity(state, LEVER, RATE, False)[0] + 0.02
+    plain = state.copied()
+    expected, H = dvl.velocity(plain, LEVER, RATE, False)
+    correct(plain, H, measured - expected, 1e-6 * np.eye(3), OPEN)
+    dvl.correct_velocity(tuple(state), measured, 1e-6, LEVER, RATE, 0.0, False, OPEN)
+    np.testing.assert_allclose(state.velocity, plain.velocity, atol=1e-12)
+    np.testing.assert_array_equal(state.reference, state.velocity)
+    after = dvl.velocity(state, LEVER, RATE, False)[1]
+    told, kept = H @ plain.covariance @ H.T, after @ state.covariance @ after.T
+    np.testing.assert_allclose(kept, told, rtol=0.1, atol=1e-3 * np.abs(told).max())

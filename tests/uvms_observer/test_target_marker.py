@@ -8,19 +8,19 @@ from scipy.spatial.transform import Rotation
 
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.target_marker import (
-    JOINT_SIZE,
     correct_marker,
     first_sight,
     sight,
 )
 from uvms_observer.navigation.propagation import propagate
 from uvms_observer.navigation.state import SIZE
-from uvms_observer.navigation.target import TARGET_SIZE, with_target
+from uvms_observer.navigation.target import POSE, TARGET_SIZE, with_target
 
 LEVER = np.array([0.8, -0.1, 0.2])
 MOUNT = Rotation.from_euler("ZYX", [20.0, -70.0, 5.0], degrees=True).as_matrix()
 N = np.diag(np.square([0.004, 0.005, 0.006, 0.02, 0.03, 0.01]))
 OPEN = float("inf")
+JOINT_SIZE = SIZE + TARGET_SIZE
 PARTS = ("position", "velocity", "gyro_bias", "accelerometer_bias", "compass_bias", "further")
 
 
@@ -75,7 +75,7 @@ def assert_is(state, expected, covariance):
 @pytest.mark.parametrize("seed", range(4))
 def test_derivative_of_a_sight(seed):
     state = state_with_target(seed)
-    place, attitude, H = sight(state, LEVER, MOUNT)
+    place, attitude, H = sight(state, LEVER, MOUNT, 0)
     np.testing.assert_allclose(place, seen(state)[0], atol=1e-12)
     turned = Rotation.from_quat(attitude).as_matrix()
     np.testing.assert_allclose(turned, seen(state)[1], atol=1e-12)
@@ -93,12 +93,12 @@ def test_derivative_of_a_sight(seed):
 @pytest.mark.parametrize("seed", range(4))
 def test_a_sight_corrects_vehicle_and_target_together(seed):
     state = state_with_target(seed)
-    place, attitude, H = sight(state, LEVER, MOUNT)
+    place, attitude, H = sight(state, LEVER, MOUNT, 0)
     residual = 0.01 * np.random.default_rng(seed).standard_normal(6)
     expected, covariance = joint_correction(state, H, residual, N)
     turned = Rotation.from_rotvec(residual[3:]) * Rotation.from_quat(attitude)
     distance = residual @ np.linalg.solve(H @ joint(state) @ H.T + N, residual)
-    got = correct_marker(state, place + residual[:3], turned.as_quat(), N, LEVER, MOUNT, OPEN)
+    got = correct_marker(state, place + residual[:3], turned.as_quat(), N, LEVER, MOUNT, 0, OPEN)
     assert got == pytest.approx(distance, rel=1e-6)
     assert_is(state, expected, covariance)
 
@@ -158,8 +158,8 @@ def test_the_first_sight_makes_the_target_as_uncertain_as_the_vehicle_and_no_mor
     state = with_target(random_state(seed), np.zeros(3), np.zeros(4), np.zeros(6))
     place = np.array([0.1, -0.2, 1.4])
     attitude = Rotation.random(random_state=seed).as_quat()
-    first_sight(state, place, attitude, N, LEVER, MOUNT)
-    expected, expected_attitude, H = sight(state, LEVER, MOUNT)
+    first_sight(state, place, attitude, N, LEVER, MOUNT, 0)
+    expected, expected_attitude, H = sight(state, LEVER, MOUNT, 0)
     np.testing.assert_allclose(expected, place, atol=1e-12)
     assert abs(expected_attitude @ attitude) == pytest.approx(1.0)
     # what is seen next differs from the first sight by the noise of the first one alone
@@ -169,8 +169,77 @@ def test_the_first_sight_makes_the_target_as_uncertain_as_the_vehicle_and_no_mor
 
 def test_a_sight_far_off_is_refused():
     state = state_with_target(2)
-    place, attitude, _ = sight(state, LEVER, MOUNT)
+    place, attitude, _ = sight(state, LEVER, MOUNT, 0)
     before = state.copied()
-    assert correct_marker(state, place + 20.0, attitude, N, LEVER, MOUNT, 20.0) > 20.0
+    assert correct_marker(state, place + 20.0, attitude, N, LEVER, MOUNT, 0, 20.0) > 20.0
     for name in ("position", "quaternion", "covariance", "target", "cross", "target_covariance"):
         np.testing.assert_array_equal(getattr(state, name), getattr(before, name))
+
+
+def with_second(seed, known=True):
+    """A state with two targets, the second one correlated with vehicle and first, or unknown."""
+    state = state_with_target(seed)
+    zero = np.zeros(3), np.zeros(4), np.zeros(6)
+    state = with_target(state, *zero)
+    if known:
+        place = np.array([-0.4, 0.3, 1.7])
+        turn = Rotation.random(random_state=seed + 9).as_quat()
+        first_sight(state, place, turn, N, LEVER, MOUNT, 1)
+        state.covariance[range(9), range(9)] += 0.01  # the vehicle has moved since
+        seen_again = sight(state, LEVER, MOUNT, 0)[:2]
+        correct_marker(state, *seen_again, N, LEVER, MOUNT, 0, OPEN)
+    return state
+
+
+def moved_both(state, e):
+    """The state with an error (SIZE + 12,)."""
+    poses = []
+    for index in range(2):
+        own = e[SIZE + TARGET_SIZE * index :][:TARGET_SIZE]
+        pose = state.target[POSE * index :][:POSE]
+        turned = Rotation.from_rotvec(own[3:]) * Rotation.from_quat(pose[3:])
+        poses += [pose[:3] + own[:3], turned.as_quat()]
+    return plus(state, e[:SIZE])._replace(target=np.concatenate(poses))
+
+
+@pytest.mark.parametrize("seed", range(3))
+@pytest.mark.parametrize("index", [0, 1])
+def test_a_sight_of_one_target_corrects_the_other_by_what_they_have_in_common(seed, index):
+    state = with_second(seed)
+    place, attitude, H = sight(state, LEVER, MOUNT, index)
+    residual, P = 0.01 * np.random.default_rng(seed).standard_normal(6), joint(state)
+    K = P @ H.T @ np.linalg.inv(H @ P @ H.T + N)
+    left = np.eye(len(P)) - K @ H
+    expected, covariance = moved_both(state, K @ residual), left @ P @ left.T + K @ N @ K.T
+    other = SIZE + TARGET_SIZE * (1 - index)
+    assert np.abs(K[other : other + 3]).max() > 1e-3  # or there were nothing to test
+    turned = Rotation.from_rotvec(residual[3:]) * Rotation.from_quat(attitude)
+    seen_at = place + residual[:3]
+    correct_marker(state, seen_at, turned.as_quat(), N, LEVER, MOUNT, index, OPEN)
+    assert_is(state, expected, covariance)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_what_is_measured_of_the_vehicle_corrects_both_targets(seed):
+    state, rng = with_second(seed), np.random.default_rng(seed)
+    H, residual = rng.standard_normal((3, SIZE)), 0.01 * rng.standard_normal(3)
+    noise, P = np.diag([1e-3, 2e-3, 3e-3]), joint(state)
+    full = np.hstack([H, np.zeros((3, 2 * TARGET_SIZE))])
+    K = P @ full.T @ np.linalg.inv(full @ P @ full.T + noise)
+    left = np.eye(len(P)) - K @ full
+    expected, covariance = moved_both(state, K @ residual), left @ P @ left.T + K @ noise @ K.T
+    correct(state, H, residual, noise, OPEN, True)
+    assert_is(state, expected, covariance)
+
+
+@pytest.mark.parametrize("seed", range(2))
+def test_a_target_that_nobody_has_seen_stays_nowhere(seed):
+    state = with_second(seed, known=False)
+    place, attitude, _ = sight(state, LEVER, MOUNT, 0)
+    correct_marker(state, place + 0.01, attitude, N, LEVER, MOUNT, 0, OPEN)
+    np.testing.assert_array_equal(state.target[POSE:], 0.0)
+    np.testing.assert_array_equal(joint(state)[SIZE + TARGET_SIZE :], 0.0)
+    first_sight(state, np.array([0.0, 0.2, 1.0]), attitude, N, LEVER, MOUNT, 1)
+    *_, H = sight(state, LEVER, MOUNT, 1)
+    np.testing.assert_allclose(H @ joint(state) @ H.T, N, atol=1e-12)
+    assert np.linalg.eigvalsh(joint(state)).min() > -1e-12

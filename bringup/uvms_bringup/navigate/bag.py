@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 from uvms_analysis.errors import LogError
+from uvms_analysis.log.definition import log_codec
 from uvms_analysis.log.locate import log_path
 from uvms_analysis.log.read import RunLog
 from uvms_core.cdr import DefinitionError, codec, stamp_in
@@ -112,6 +113,7 @@ def _sqlite_bag(path: Path) -> Bag:
     reader = opened()
     types = {one.topic: one.msgtype for one in reader.connections}
     counts = {one.topic: one.msgcount for one in reader.connections}
+    definitions = {one.topic: _definition(one) for one in reader.connections}
     reader.close()
 
     def read(names: Collection[str]) -> Iterator[Raw]:
@@ -125,11 +127,25 @@ def _sqlite_bag(path: Path) -> Bag:
         finally:
             reader.close()
 
-    return Bag(path, types, counts, read, lambda name: _installed(path, name, types[name]))
+    def decoder(name: str) -> Callable[[bytes], Any]:
+        if (text := definitions[name]) is None:
+            return _installed(path, name, types[name])
+        return log_codec(f"log {path}: {name}", types[name], text).decode
+
+    return Bag(path, types, counts, read, decoder)
+
+
+def _definition(connection: Any) -> bytes | None:
+    """That of a topic's messages where the bag has it, as bags have since ROS 2 Iron."""
+    found = connection.msgdef
+    is_text = found.format.name == "MSG" and found.data
+    return str(found.data).encode() if is_text else None
 
 
 def _installed(path: Path, name: str, type_name: str) -> Callable[[bytes], Any]:
     try:
         return codec(type_name).decode
     except DefinitionError as fault:
-        raise LogError(f"log {path}: {name}: {fault}") from fault
+        raise LogError(
+            f"log {path}: {name}: the log has no definition of its messages, and {fault}"
+        ) from fault

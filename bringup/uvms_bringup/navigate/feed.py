@@ -8,9 +8,9 @@ from typing import Any, Literal, NamedTuple
 import numpy as np
 
 from uvms_analysis.log.definition import UNDECODABLE
-from uvms_bringup.errors import BringupError
 from uvms_bringup.navigate.arrivals import Arrivals
 from uvms_bringup.navigate.bag import Bag, Raw
+from uvms_bringup.navigate.clocks import check_one_clock, check_one_way
 from uvms_bringup.navigate.topic_map import TopicMap
 from uvms_core.checks import check
 from uvms_core.errors import SignalError
@@ -26,10 +26,6 @@ ASTRAY = to_nanoseconds(60.0)
 """A stamp that is farther from the time of recording than its topic's usually are is no stamp, ns:
 no transport takes a minute."""
 HEADER, LOG = "header", "log"
-
-
-class ClockError(BringupError):
-    """The stamps of two topics are not of one clock."""
 
 
 class Sample(NamedTuple):
@@ -78,6 +74,8 @@ class Feed:
     ) -> list[tuple[int, int, Raw]]:
         """Arrival, stamp and message."""
         stamped = [(self._stamp(one), one) for one in messages]
+        for topic in self._topics:
+            check_one_way(topic, [s for s, one in stamped if one.topic == topic and s is not None])
         good = self._of_one_clock([(s, one) for s, one in stamped if s is not None])
         found = []
         for stamp, one in good:
@@ -96,19 +94,14 @@ class Feed:
         """Without stamps that are astray.
 
         Raises:
-            ClockError: those of a whole topic are on another clock than those of the first.
+            ClockError: those of a whole topic are on another clock than those of the first, or go
+                back and stay there.
         """
         delays: dict[str, list[int]] = {}
         for stamp, one in stamped:
             delays.setdefault(one.topic, []).append(one.logged - stamp)
         usual = {topic: int(np.median(each)) for topic, each in delays.items()}
-        first = next(iter(usual), "")
-        for topic, delay in usual.items():
-            if abs(delay - usual[first]) > ASTRAY:
-                raise ClockError(
-                    f"the stamps of {topic} are {to_seconds(usual[first] - delay):.0f} s off those"
-                    f" of {first}; --stamps {LOG} takes the time of recording for all"
-                )
+        check_one_clock(usual, ASTRAY)
         good = []
         for stamp, one in stamped:
             if abs(one.logged - stamp - usual[one.topic]) > ASTRAY:

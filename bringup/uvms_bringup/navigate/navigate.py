@@ -2,7 +2,7 @@
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -19,9 +19,11 @@ from uvms_bringup.navigate.topic_map import TopicMap, topic_map
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
 from uvms_core.config import validated
+from uvms_core.errors import ConfigError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle, dump_vehicle, load_vehicle
+from uvms_core.vehicle.loader import vehicle_from_data
 from uvms_dynamics.simulation import PlantConfig
 from uvms_observer import NavigationConfig, NavigationFilter
 from uvms_observer.arrivals import used_sensors
@@ -90,10 +92,12 @@ def navigate(
     bag = open_bag(log)
     setup = setup_of(bag, vehicle)
     wanted = topic_map(bag, setup.vehicle, given)
+    if not bag.is_ours:
+        setup = replace(setup, vehicle=_as_recorded(setup.vehicle, wanted))
     feed = Feed(bag, wanted, setup.vehicle, setup.period, stamps)
     track = None if wanted.reference is None else read_track(bag, wanted.reference, stamps == LOG)
     start = None if bag.is_ours else _start(feed, wanted, setup, track)
-    estimation = Estimation(setup.vehicle, setup.config, setup.period, start)
+    estimation = _estimation(bag, wanted, setup, start)
     folder = Path(output) if output is not None else _beside(bag.path)
     estimates = _record(folder, bag, setup, feed, estimation)
     if not estimates:
@@ -102,6 +106,19 @@ def navigate(
     text = json.dumps(summary, indent=2)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
     return summary | {"output": str(folder)}
+
+
+def _as_recorded(vehicle: Vehicle, wanted: TopicMap) -> Vehicle:
+    """The vehicle without the sensors of which the log has nothing: nobody waits for those.
+
+    Raises:
+        VehicleFileError, ConfigError: it cannot be navigated without.
+    """
+    missing = [each.name for each in used_sensors(vehicle) if each.name not in wanted.sensors]
+    if not missing:
+        return vehicle
+    without = {f"sensors.{name}": None for name in missing}
+    return vehicle_from_data(vehicle.model_dump(warnings=False), vehicle.name, without)
 
 
 def _beside(path: Path) -> Path:
@@ -124,6 +141,16 @@ def _start(feed: Feed, wanted: TopicMap, setup: Setup, track: Track | None) -> O
     twist = np.diag([LOST_SPEED_M_S] * 3 + [1.0] * 3) ** 2
     level = np.array([0.0, 0.0, 0.0, 1.0])
     return Odometry(stamp, begin, level, np.zeros(6), pose, twist)
+
+
+def _estimation(bag: Bag, wanted: TopicMap, setup: Setup, start: Odometry | None) -> Estimation:
+    """The filter, or NavigateError with what it lacks."""
+    try:
+        return Estimation(setup.vehicle, setup.config, setup.period, start)
+    except ConfigError as fault:
+        raise NavigateError(
+            "; ".join([f"log {bag.path}: {fault}", *wanted.left_out.values()])
+        ) from fault
 
 
 def _record(

@@ -1,6 +1,6 @@
 """Which topics of a log the filter takes for which sensors of the vehicle."""
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -9,7 +9,6 @@ from uvms_bringup.navigate.bag import Bag
 from uvms_core import registry, topics
 from uvms_core.errors import PluginError
 from uvms_core.sensors import INERTIAL, MountedSensor, sensor_type
-from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
 from uvms_core.yaml_text import read_yaml
 from uvms_observer.arrivals import used_sensors
@@ -33,11 +32,13 @@ class TopicMap:
         sensors: topic of each sensor that the log has, by the sensor's name.
         reference: topic of the reference; None without one.
         notes: what was guessed, and what was left out.
+        left_out: why there is no topic for a sensor, by its name.
     """
 
     sensors: dict[str, str] = field(default_factory=dict)
     reference: str | None = None
     notes: list[str] = field(default_factory=list)
+    left_out: dict[str, str] = field(default_factory=dict)
 
 
 def given_topics(words: Sequence[str]) -> dict[str, str]:
@@ -68,15 +69,18 @@ def topic_map(bag: Bag, vehicle: Vehicle, given: Mapping[str, str]) -> TopicMap:
     """
     sensors = {sensor.name: sensor for sensor in used_sensors(vehicle)}
     _check_keys(given, sensors)
-    found = TopicMap()
-    for name, sensor in sensors.items():
-        topic = _given(bag, name, (sensor.topic.type,), given)
-        if topic is None and name not in given:
-            topic = _guess(found, bag, sensor.topic, name, set(given.values()))
-        if topic is not None:
-            found.sensors[name] = topic
-    _require_unit(bag, found)
+    found, chosen = TopicMap(), dict[str, str]()
+    for name in given.keys() & sensors.keys():
+        if (topic := _given(bag, name, (sensors[name].topic.type,), given)) is not None:
+            chosen[name] = topic
     found.reference = _given(bag, REFERENCE, REFERENCE_TYPES, given)
+    for name in [name for name in sensors if name not in given]:
+        taken = {*chosen.values(), found.reference}
+        waiting = [sensors[each] for each in sensors if each not in chosen and each not in given]
+        if (topic := _guess(found, bag, sensors[name], waiting, taken)) is not None:
+            chosen[name] = topic
+    found.sensors = {name: chosen[name] for name in sensors if name in chosen}
+    _require_unit(bag, found)
     if REFERENCE not in given:
         found.reference = _guess_reference(found, bag)
     found.notes += _unused(bag, found, sensors.values())
@@ -107,21 +111,53 @@ def _given(bag: Bag, key: str, types: Sequence[str], given: Mapping[str, str]) -
     )
 
 
-def _guess(found: TopicMap, bag: Bag, topic: Topic, key: str, taken: set[str]) -> str | None:
+def _guess(
+    found: TopicMap,
+    bag: Bag,
+    sensor: MountedSensor,
+    waiting: Sequence[MountedSensor],
+    taken: Collection[str | None],
+) -> str | None:
     """The only topic of the type that nothing else is; our own name goes before."""
+    topic, key = sensor.topic, sensor.name
     fits = [name for name in bag.of_type(topic.type) if name not in taken]
     own = [name for name in fits if name.endswith(topic.resolve())]
     if len(own) == 1:
         return own[0]
-    if len(fits) == 1:
-        found.notes.append(f"{key}: {fits[0]}, the only {topic.type}")
+    rivals = [other.name for other in waiting if _may_be_meant(other, sensor)]
+    if len(fits) == 1 and not rivals:
+        found.notes.append(f"{key}: {fits[0]}, the only {topic.type}{_left(bag, topic.type)}")
         return fits[0]
-    if fits and key != INERTIAL.name:
-        found.notes.append(
-            f"{key}: left out, since the log has several {topic.type}: {', '.join(fits)}; choose"
-            f" one by --topics {key}={fits[0]}"
-        )
+    if key != INERTIAL.name and not bag.is_ours:
+        found.left_out[key] = f"{key}: left out, since {_why_none(bag, sensor, fits, rivals)}"
+        found.notes.append(found.left_out[key])
     return None
+
+
+def _may_be_meant(other: MountedSensor, sensor: MountedSensor) -> bool:
+    """Whether a topic that this sensor could have may as well be that of the other one.
+
+    The inertial unit goes first, and of two of a kind that which has the name of its kind.
+    """
+    if other is sensor or other.topic.type != sensor.topic.type or sensor.name == INERTIAL.name:
+        return False
+    return not (other.type is sensor.type and sensor.name == sensor.type.name)
+
+
+def _left(bag: Bag, type_name: str) -> str:
+    return "" if len(bag.of_type(type_name)) == 1 else " that is left"
+
+
+def _why_none(bag: Bag, sensor: MountedSensor, fits: Sequence[str], rivals: Sequence[str]) -> str:
+    """Why there is no topic for this sensor."""
+    kind = sensor.topic.type
+    if not fits:
+        further = " besides those of other sensors" if bag.of_type(kind) else ""
+        return f"the log has no {kind}{further}"
+    choose = f"choose one by --topics {sensor.name}={fits[0]}"
+    if len(fits) > 1:
+        return f"the log has several {kind}: {', '.join(fits)}; {choose}"
+    return f"{fits[0]} may as well be that of {' or '.join(rivals)}; {choose}"
 
 
 def _require_unit(bag: Bag, found: TopicMap) -> None:

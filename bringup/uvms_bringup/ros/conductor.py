@@ -3,27 +3,26 @@
 import math
 import sys
 import time
-import uuid
 from collections.abc import Callable, Collection, Mapping, Sequence
 from typing import Any
 
 from action_msgs.msg import GoalStatus
-from rclpy.action import ActionClient
 from rclpy.node import Node
 from std_srvs.srv import SetBool, Trigger
-from unique_identifier_msgs.msg import UUID
 
 from uvms_bringup.agenda import Agenda, Goals
 from uvms_bringup.errors import RunError
 from uvms_bringup.ros.acknowledge import Acknowledgement
+from uvms_bringup.ros.goal_sender import GoalSender, refusal
 from uvms_bringup.ros.graph_watch import CONDUCTOR, DISCOVERY_S, REST_S, GraphWatch
 from uvms_bringup.ros.losses import Losses
 from uvms_bringup.ros.recorder import Recorder, Write
 from uvms_bringup.ros.state_publisher import StateBroadcaster
+from uvms_bringup.ros.turns import FIND_S, Turns
 from uvms_bringup.stopped import Stopped
 from uvms_core import diagnostics, topics
-from uvms_core.messages import from_message, to_message
-from uvms_core.ros.convert import action_class, message_class, to_ros
+from uvms_core.messages import from_message
+from uvms_core.ros.convert import message_class
 from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
@@ -86,7 +85,7 @@ class Conductor(Node):
         super().__init__(CONDUCTOR, **options)
         self._graph, self._foreign, self._patient = graph, foreign, bool(absent)
         self.graph_watch = GraphWatch(self, graph, absent)
-        self._joint_names = joint_names
+        self._goals = GoalSender(self, joint_names, self._take_feedback)
         self.recorder = Recorder(self, write, recorded)
         self._watch = watch
         self._end: tuple[Topic, ...] = LOOP_END
@@ -97,9 +96,8 @@ class Conductor(Node):
         self.result_status: int | None = None  # action_msgs/msg/GoalStatus
         self.goal_handle: Any = None
         self.agenda = Agenda(None)
-        self._goal_clients: dict[str, Any] = {}  # of actions, by name
         self._navigation = ""  # what it said last
-        self._sent: Any = None  # the answer to a further goal that has been sent
+        self._sent: Request | None = None  # a further goal that has been sent
         self.create_subscription(
             message_class(topics.DIAGNOSTICS),
             topics.DIAGNOSTICS.name,
@@ -111,6 +109,7 @@ class Conductor(Node):
         self.losses = Losses(self, self.recorder, set(graph) - set(foreign))
         self._start = self.create_client(Trigger, "start")
         self._pause = self.create_client(SetBool, "pause")
+        self._turns = Turns(self, self._pause)
 
     def broadcast(self, vehicle: Vehicle, lockstep: bool) -> None:
         """From now on publish /tf and robot_description from the recorded messages."""
@@ -160,8 +159,10 @@ class Conductor(Node):
             lambda: f"the first thruster_command; nothing yet from {', '.join(self._silent())}",
         )
         self.agenda = Agenda(goal)
-        first = self.agenda.due
-        if first is not None and topics.ODOMETRY.name in self.recorder.newest:
+        first, knows = self.agenda.due, topics.ODOMETRY.name in self.recorder.newest
+        if self.agenda.remaining > int(knows):
+            self._take_turns(spinner)
+        if first is not None and knows:
             self.send_goal(spinner, first)
             self.agenda.begin(self.stamp)
         self._call(spinner, self._pause, SetBool.Request(data=False), "plant/pause")
@@ -203,31 +204,34 @@ class Conductor(Node):
             if all(topic.name not in newest for topic in own.outputs)
         ]
 
+    def _take_turns(self, spinner: Spinner) -> None:
+        """In lockstep no time passes between two goals, where the planner can wait for them."""
+        if self.acknowledgement is None or topics.MOTION_PLANNER in self._foreign:
+            return
+        found = time.monotonic() + FIND_S
+        while not self._turns.is_possible() and time.monotonic() < found:
+            spinner.spin_once(0.05)
+        if self._turns.is_possible():
+            self._turns.begin()
+            self._await(
+                spinner, self._turns.settled, ANSWER_PATIENCE_S, lambda: "a planner that waits"
+            )
+
     def send_goal(self, spinner: Spinner, goal: Goal) -> None:
         """Ask the planner for a goal; RunError with its reason where it is rejected."""
-        action = topics.action_of(goal)
-        client, cls = self._client_of(goal)
-        message = to_ros(cls.Goal, to_message(action, goal, self._joint_names))
+        name = topics.action_of(goal).name
         self._await(
             spinner,
-            client.server_is_ready,
+            lambda: self._goals.is_ready(goal),
             ANSWER_PATIENCE_S,
-            lambda: f"a server of the action {action.name!r}",
+            lambda: f"a server of the action {name!r}",
         )
         self._faults.clear()
-        goal_id = UUID(
-            uuid=list(uuid.uuid4().bytes)
-        )  # the same for every repetition, so that no second goal is created
-        request = Request(
-            lambda: client.send_goal_async(message, self._take_feedback, goal_id),
-            client.server_is_ready,
-        )
-        handle = self._answer_to(spinner, request, f"motion_planner: {action.name}")
-        if not handle.accepted:
-            reason = self._reason(spinner)
-            # A server refuses an id that it already has: it accepted the goal the first time.
-            if reason or request.times_asked == 1:
-                raise RunError(f"the planner rejected the goal: {reason or 'no reason given'}")
+        request = self._goals.request(goal)
+        handle = self._answer_to(spinner, request, f"motion_planner: {name}")
+        reason = "" if handle.accepted else self._reason(spinner)
+        if (why := refusal(handle, request, reason)) is not None:
+            raise RunError(f"the planner rejected the goal: {why}")
         self.goal_handle = handle
         handle.get_result_async().add_done_callback(self._take_result)
 
@@ -306,46 +310,38 @@ class Conductor(Node):
             self.agenda.end(self.stamp, self.goal_state(), self.result.message)
 
     def go_on(self) -> None:
-        """Where a goal has succeeded, ask for the next one; time goes on meanwhile.
+        """Where a goal has succeeded, ask for the next one.
 
-        The first one is asked for here where navigation did not know the place at the start.
+        The first one is asked for here where navigation did not know the place at the start. In
+        lockstep time stands still meanwhile, as `Turns` says; else it goes on.
         """
         self.hear()
         goal = self.agenda.due
         if goal is None or topics.REFERENCE.name not in self.recorder.newest:
+            self._turns.settled()
+        elif not self._turns.hold() or not self._goals.is_ready(goal):
             return
-        if self._sent is None:
-            self._send(goal)
-        elif self._sent.done():
-            self._take_answer(self._sent.result())
-            self._sent = None
-
-    def _send(self, goal: Goal) -> None:
-        """Ask the planner for a further goal, once the server of its action is found."""
-        client, cls = self._client_of(goal)
-        if client.server_is_ready():
-            action = topics.action_of(goal)
-            message = to_ros(cls.Goal, to_message(action, goal, self._joint_names))
+        elif self._sent is None:
             self._faults.clear()
-            self._sent = client.send_goal_async(message, self._take_feedback)
+            self._sent = self._goals.request(goal)
+        elif (handle := self._sent.answer()) is not None:
+            self._take_answer(handle, self._sent)
 
-    def _client_of(self, goal: Goal) -> tuple[Any, Any]:
-        """The client of a goal's action, and the action's class."""
-        action = topics.action_of(goal)
-        cls = action_class(action)
-        if action.name not in self._goal_clients:
-            self._goal_clients[action.name] = ActionClient(self, cls, action.name)
-        return self._goal_clients[action.name], cls
+    def ask_again(self) -> None:
+        """The planner was started again: it knows nothing of what it was asked."""
+        self._sent = None
 
-    def _take_answer(self, handle: Any) -> None:
-        if not handle.accepted:
-            reason = self._faults.get(topics.MOTION_PLANNER, "no reason given")
-            self.agenda.refuse(self.stamp, reason)
-            return
-        self.goal_handle, self.result, self.result_status = handle, None, None
-        self.feedback = None
-        self.agenda.begin(self.stamp)
-        handle.get_result_async().add_done_callback(self._take_result)
+    def _take_answer(self, handle: Any, request: Request) -> None:
+        self._sent = None
+        why = refusal(handle, request, self._faults.get(topics.MOTION_PLANNER, ""))
+        if why is not None:
+            self.agenda.refuse(self.stamp, why)
+        else:
+            self.goal_handle, self.result, self.result_status = handle, None, None
+            self.feedback = None
+            self.agenda.begin(self.stamp)
+            handle.get_result_async().add_done_callback(self._take_result)
+        self._turns.go_on(self.agenda.remaining > 0)
 
     def goal_failure(self) -> list[str]:
         """Why the run's goal did not succeed, in the planner's words, where it has ended."""
@@ -368,7 +364,7 @@ class Conductor(Node):
         """What somebody else asked of the run's nodes, in words."""
         own = self.agenda.begun + (self._sent is not None)  # its acceptance may be counted first
         goals = self._asked[diagnostics.GOALS_ACCEPTED] - own
-        pauses = self._asked[diagnostics.PAUSES]
+        pauses = self._asked[diagnostics.PAUSES] - self._turns.pauses
         found = [f"the planner accepted {goals} goals that were not this run's"] * (goals > 0)
         return found + [f"time was held {pauses} times by whoever called pause"] * (pauses > 0)
 

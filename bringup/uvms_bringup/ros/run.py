@@ -179,6 +179,8 @@ class GraphRun:
         for role, how in nodes.respawn_dead():
             conductor.graph_watch.expect_again(role)
             conductor.losses.restart(role)
+            if role == topics.MOTION_PLANNER:
+                conductor.ask_again()
             when = to_seconds(conductor.stamp)
             self.ending.incidents.append(f"t = {when:.2f} s: {how}; started again")
         conductor.losses.look()

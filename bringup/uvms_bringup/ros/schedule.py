@@ -38,11 +38,13 @@ class TickOf:
 
 
 def with_gaps(run: RunLog, own: topics.NodeTopics) -> topics.NodeTopics:
-    """The node's topics, with what the plant said of missing samples if it reads sensors."""
+    """The node's topics, with what the plant said of missing samples if it reads sensors, and what
+    navigation said where it did not know the place, if it reads the odometry.
+    """
     reads_sensors = any(topic is topics.JOINT_STATES or topic.sensor for topic in own.inputs)
-    if not reads_sensors or not run.has(topics.SENSOR_GAPS):
-        return own
-    return replace(own, inputs=(*own.inputs, topics.SENSOR_GAPS))
+    reads = {topics.SENSOR_GAPS: reads_sensors, topics.ODOMETRY_GAPS: topics.ODOMETRY in own.inputs}
+    gaps = [topic for topic, is_read in reads.items() if is_read and run.has(topic)]
+    return replace(own, inputs=(*own.inputs, *gaps))
 
 
 def schedule(

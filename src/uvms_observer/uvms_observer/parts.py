@@ -19,6 +19,7 @@ from uvms_observer.disturbance import ObserverConfig
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig
 from uvms_observer.navigation.resume import carried, doubted, fits, is_in_the_middle, lost
+from uvms_observer.navigation.sensor_health import Health
 from uvms_observer.truth import TruthPart
 
 CERTAIN = 10.0
@@ -163,8 +164,15 @@ class NavigationPart(Part):
 
     def status(self) -> dict[str, int | float | str]:
         """Counters and uncertainty of the filter."""
-        status = self.filter.status()
+        status = {**self.filter.status(), **self._out_of_reach()}
         return {_STATUS.get(name, name): value for name, value in status.items()}
+
+    def _out_of_reach(self) -> dict[str, str]:
+        """Sensors that cannot give samples where the vehicle is, which is no trouble."""
+        health = getattr(self.filter, "health", None)
+        silent = {} if health is None or not self._begun else health()
+        names = [name for name, each in silent.items() if each is Health.OUT_OF_REACH]
+        return {Health.OUT_OF_REACH.name.lower(): ", ".join(names)} if names else {}
 
 
 def _fix_noise(vehicle: Vehicle) -> float:

@@ -89,13 +89,30 @@ def _used(
 
 def _safe(contents: Contents, used: Used) -> Iterator[Finding]:
     start = 0.0 if contents.is_lockstep else _patience_s(contents) * NANOSECONDS
-    after = used.safe[used.safe > start]
+    after = used.safe[used.safe > start + _unknown_until(contents)]
     if len(after):
         text = (
             f"the plant held its safe state in {len(after)} of {used.ticks} ticks, first at"
             f" {after[0] / NANOSECONDS:.3f} s: no command came in time"
         )
         yield Finding(COMMANDS, text, used.topic)
+
+
+def _unknown_until(contents: Contents) -> int:
+    """Stamp up to which navigation did not know from the start where the vehicle is, ns.
+
+    In real time there are no torques until then.
+    """
+    log = contents.log
+    if contents.is_lockstep or not log.has(topics.ODOMETRY_GAPS):
+        return 0
+    try:
+        known = log.signals(topics.ODOMETRY) if log.has(topics.ODOMETRY) else []
+        unknown = log.signals(topics.ODOMETRY_GAPS)
+    except LogError:
+        return 0
+    first = known[0].stamp if known else math.inf
+    return max((each.stamp for each in unknown if each.stamp < first), default=0)
 
 
 def _patience_s(contents: Contents) -> float:

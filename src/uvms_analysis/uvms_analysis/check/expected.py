@@ -54,17 +54,17 @@ def rhythms(contents: Contents) -> Rhythms | None:
     found[topics.REFERENCE] = Rhythm(step, extra=1)
     found |= {topic: Rhythm(0, extra=1) for topic in LATCHED}
     found.pop(topics.DIAGNOSTICS)  # a node reports when it has something to say
-    for topic in _with_gaps(log):
+    for topic in _with_gaps(log, contents.is_lockstep):
         found.pop(topic, None)
     return Rhythms(tick, {log.full_name(topic): rhythm for topic, rhythm in found.items()})
 
 
-def _with_gaps(log: RunLog) -> Iterator[Topic]:
+def _with_gaps(log: RunLog, is_lockstep: bool) -> Iterator[Topic]:
     """Topics that did not all come when they were due, as somebody says.
 
     Samples of sensors, of which the plant says so; the odometry, and what follows from it, where
-    navigation does not know yet where the vehicle is. What was sent and not recorded is found out
-    all the same.
+    navigation does not know yet where the vehicle is: in real time the torques as well, which the
+    controller then leaves to the brakes. What was sent and not recorded is found out all the same.
     """
     told = [topic for topic in topics.GAPS if log.has(topic)]
     names = {name for topic in told for each in log.signals(topic) for name in each.sensors}
@@ -73,6 +73,8 @@ def _with_gaps(log: RunLog) -> Iterator[Topic]:
             yield topic
     if topics.ODOMETRY.name in names:
         yield from (topics.TF, topics.REFERENCE, topics.STABILITY)
+        if not is_lockstep:
+            yield topics.JOINT_COMMAND
 
 
 def _period(config: Mapping[str, Any], path: str) -> int:

@@ -32,8 +32,8 @@ def _find(package: str, kind: str, file: str) -> Path:
         if path.is_file():
             return path
     raise DefinitionError(
-        f"{package}/{kind}/{Path(file).stem} is not installed; looked for "
-        + ", ".join(str(path) for path in tried)
+        f"{package}/{kind}/{Path(file).stem} is not installed: source the ROS workspace that has"
+        f" {package}; looked for {', '.join(str(path) for path in tried)}"
     )
 
 

@@ -6,14 +6,25 @@ from typing import Any
 
 from rosidl_parser.definition import AbstractNestedType, NamespacedType
 
+from uvms_core.errors import DefinitionError
 from uvms_core.topics import Action, Topic
 
 
 @cache
 def interface_class(type_name: str) -> Any:
-    """The class of `package/msg/Name`, `package/srv/Name` or `package/action/Name`."""
+    """The class of `package/msg/Name`, `package/srv/Name` or `package/action/Name`.
+
+    Raises:
+        DefinitionError: its package is not installed, or has no such type.
+    """
     package, kind, name = type_name.split("/")
-    return getattr(import_module(f"{package}.{kind}"), name)
+    try:
+        return getattr(import_module(f"{package}.{kind}"), name)
+    except (ImportError, AttributeError) as fault:
+        raise DefinitionError(
+            f"{type_name} is not installed: source the ROS workspace that has {package}, before"
+            f" the nodes start ({fault})"
+        ) from fault
 
 
 def message_class(topic: Topic) -> Any:

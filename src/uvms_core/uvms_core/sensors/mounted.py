@@ -47,7 +47,8 @@ class MountedSensor:
             return self.section.frame_id
         if self.type.frame == WORLD_FRAME and self.mounting.world == "enu":
             return MAP_FRAME
-        return self.type.frame or self.mounting_frame
+        # two of a kind have frames of their own
+        return self.type.frame.replace(self.type.name, self.name) or self.mounting_frame
 
     @cached_property
     def topic(self) -> Topic:

@@ -86,6 +86,17 @@ class TargetMarker(Sensor):
         found: Array = mount @ R_MOUNT_OPTICAL
         return found
 
+    def recognises(self, seen: Array, normal: Array) -> bool:
+        """Whether a marker at this place (3,) with this normal (3,), camera axes, is recognised."""
+        away = float(np.linalg.norm(seen))
+        if seen[2] <= 0.0 or not self.min_range_m <= away <= self.max_range_m:
+            return False
+        half_view = np.tan(np.radians(self.field_of_view_deg) / 2.0)
+        if (np.abs(seen[:2]) > half_view * seen[2]).any():
+            return False
+        least_facing = np.cos(np.radians(self.max_view_angle_deg))
+        return bool(-normal.dot(seen) >= least_facing * away)
+
     @property
     def target_quaternion(self) -> Array:
         """Attitude of the marker in map_ned, (4,)."""

@@ -11,6 +11,7 @@ The fields' units are those of what is measured. All errors but the noise and th
 section requires are none by default.
 """
 
+import math
 from collections.abc import Mapping
 from typing import Any, Literal
 
@@ -153,6 +154,20 @@ class Dvl(Instrument):
         le=180.0,
         description="and where the vehicle is tilted from the vertical by more, deg; none: never",
     )
+
+    def reaches(self, altitude: float, down: float) -> bool:
+        """Whether there is bottom lock.
+
+        Args:
+            altitude: of the transducer above the seabed, m; infinity where no seabed is given.
+            down: cosine of the vehicle's tilt from the vertical.
+        """
+        if self.max_tilt_deg is not None and down < math.cos(math.radians(self.max_tilt_deg)):
+            return False
+        if math.isinf(altitude):
+            return True
+        most = self.max_altitude_m or math.inf
+        return max(self.min_altitude_m, 0.0) <= altitude <= most
 
     @model_validator(mode="after")
     def _some_altitude_is_left(self) -> "Dvl":

@@ -48,6 +48,7 @@ def aligned(
     P[range(9, SIZE), range(9, SIZE)] = imu.process.variance
     if start is not None:
         _go_on_from(start, state, sample, imu, R)
+    state.reference[:] = state.velocity
     bias = np.diag(imu.process.variance[6:9])
     P[ATTITUDE, ATTITUDE] = R @ (bias + np.diag(imu.attitude_variance)) @ R.T
     P[ATTITUDE, COMPASS_BIAS] = -R @ bias

@@ -15,15 +15,13 @@ from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_qu
 from uvms_observer.navigation.arrays import covariance_of, product
 from uvms_observer.navigation.state import (
     DVL_MISALIGNMENT,
+    DVL_SCALE,
     FURTHER,
     SIZE,
     WIDEST,
     NavigationState,
 )
 from uvms_observer.navigation.target import correct_target
-
-TINY = 1e-18
-"""rad^2, added to the variance of a misalignment that may be 0."""
 
 
 @exact_kernel
@@ -42,9 +40,9 @@ def correct(
         residual: (m,) measured minus expected.
         N: (m, m) covariance of the measurement's noise.
         gate: largest d^2 that is accepted.
-        is_fix: whether a position is measured, from which the DVL's misalignment can be told.
-            Other samples are weighed as if that were known, and the covariance accounts for its not
-            being so: through accelerations they would estimate it, worse than mounting does.
+        is_fix: whether a position is measured, which tells scale and misalignment of the DVL. Other
+            samples leave those as they are, and the covariance accounts for their not being known
+            (Schmidt's filter): through accelerations they are known worse than from mounting.
 
     Returns:
         d^2, the squared Mahalanobis distance of the residual: above `gate` nothing was changed but
@@ -57,11 +55,9 @@ def correct(
     distance = _squared(residual, weights)
     if not distance <= gate:
         return distance
-    if is_fix:
-        gain = product(weights, HP)
-    else:
-        known = _of_known_mounting(state.covariance, HP)
-        gain = product(inverse(covariance_of(known, H, N)), known)
+    gain = product(weights, HP)
+    if not is_fix:
+        _consider(gain)
     correct_target(state, H, gain, N, residual)
     _correct_covariance(state.covariance, gain, H, HP, N)
     add_error(state, _weighted(residual, gain))
@@ -121,58 +117,12 @@ def keep_innovation(innovation: Array, residual: Array, N: Array, S: Array) -> N
 
 
 @exact_inner
-def _of_known_mounting(P: Array, HP: Array) -> Array:
-    """H P (m, SIZE) by the covariance of all else, given the DVL's misalignment m.
-
-    P_x - P_xm P_mm^-1 P_mx; the misalignment itself is left as it is.
-    """
-    first = DVL_MISALIGNMENT
-    within = np.empty((3, 3))
-    for i in range(3):
-        for j in range(3):
-            within[i, j] = P[first + i, first + j]
-        within[i, i] += TINY
-    weights = inverse(within)
-    known = HP.copy()
-    for row in range(HP.shape[0]):
-        for i in range(3):
-            told = 0.0
-            for k in range(3):
-                told += weights[i, k] * HP[row, first + k]
-            if told != 0.0:
-                for j in range(SIZE):
-                    known[row, j] -= told * P[first + i, j]
-        for i in range(3):
-            known[row, first + i] = 0.0
-    return known
-
-
-@exact_inner
-def linearization_point(
-    state: NavigationState, H: Array, residual: Array, N: Array
-) -> tuple[NavigationState, Array]:
-    """The state (+) K r, with arrays of its own, and K r: where an iterated filter linearizes.
-
-    Jazwinski, *Stochastic Processes and Filtering Theory* (1970), sec. 8.3.
-    """
-    HP = product(H, state.covariance)
-    e = _weighted(residual, product(inverse(covariance_of(HP, H, N)), HP))
-    point = NavigationState(
-        state.position.copy(),
-        state.velocity.copy(),
-        state.quaternion.copy(),
-        state.gyro_bias.copy(),
-        state.accelerometer_bias.copy(),
-        state.compass_bias.copy(),
-        state.further.copy(),
-        state.covariance,
-        state.innovation,
-        state.target,
-        state.cross,
-        state.target_covariance,
-    )
-    add_error(point, e)
-    return point, e
+def _consider(gain: Array) -> None:
+    """Leave scale and misalignment of the DVL as they are, in place of the gain (m, SIZE)."""
+    for row in range(gain.shape[0]):
+        gain[row, DVL_SCALE] = 0.0
+        for k in range(3):
+            gain[row, DVL_MISALIGNMENT + k] = 0.0
 
 
 @exact_inner

@@ -11,7 +11,14 @@ from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
 from uvms_observer.navigation import consistency, undecided
 from uvms_observer.navigation.alignment import aligned, levelled
-from uvms_observer.navigation.imu_screen import ImuScreen, Jump, ScreenMemory, Trend, remember, still
+from uvms_observer.navigation.imu_screen import (
+    ImuScreen,
+    Jump,
+    ScreenMemory,
+    Trend,
+    remember,
+    still,
+)
 from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
 from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.installation import Installation

@@ -29,7 +29,13 @@ from uvms_observer.navigation.installation import installation
 from uvms_observer.navigation.levelling import check_gravity
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
-from uvms_observer.navigation.sensor_health import Health, health_of, joined, trouble_of
+from uvms_observer.navigation.sensor_health import (
+    Health,
+    excused,
+    health_of,
+    joined,
+    trouble_of,
+)
 from uvms_observer.navigation.state import NavigationState
 from uvms_observer.navigation.time_line import Step, replayed, with_late
 
@@ -183,10 +189,14 @@ class NavigationFilter:
     def health(self) -> dict[str, Health]:
         """How each sensor is doing at the last step."""
         return {
-            name: health_of(
-                tally,
-                to_seconds(self._stamp - self._newest.get(name, 0)),
-                self._instruments.periods[name],
+            name: excused(
+                health_of(
+                    tally,
+                    to_seconds(self._stamp - self._newest.get(name, 0)),
+                    self._instruments.periods[name],
+                ),
+                self._instruments.measurements[name],
+                self._estimator.state,
             )
             for name, tally in self._estimator.tallies.items()
         }

@@ -25,6 +25,8 @@ ROW = 3
 READMITTED = 0.95
 """Share of good samples with which an excluded sensor may come back: it must agree well, and not
 slip in at the edge of an estimate that has become uncertain without it."""
+RETURNED = 0.999
+"""The same of one that has jumped back, or that is better known than the estimate by now."""
 JUMP = 1.0 - 1e-5
 """Share of good samples that are nearer than a jump to the mean of those before: a fault of a
 minute has hundreds."""
@@ -33,6 +35,9 @@ FAR = 2.2
 must show whatever the noise."""
 LEVEL = 0.25
 """Weight of a new sample in the running mean of residuals of a sensor that has jumped."""
+MOVES = 0.15
+"""Share of its std by which an estimate that is uncertain moves within some samples, as other
+sensors tell of tilt and biases: that is no jump of the sensor."""
 CHANCES = 8
 """Samples after a jump among which one must agree, as of 20 good ones one does not."""
 WORN = 3.0
@@ -89,6 +94,7 @@ class InnovationGate:
         self.limit = quantile(size, probability)
         self._size = size
         self._readmission = quantile(size, READMITTED)
+        self._return = quantile(size, RETURNED)
         # a sample less the running mean, which has a share LEVEL / (2 - LEVEL) of its variance
         self._jump = quantile(size, JUMP) * (1.0 + LEVEL / (2.0 - LEVEL))
         self.keep = 1.0 - 1.0 / max(FEW, WINDOW_S / period_s)
@@ -112,7 +118,7 @@ class InnovationGate:
         if away is not None:
             correct(-1.0)
             away = self._followed(away, innovation)
-            limit = self._readmission if self._may_come_back(away, innovation) else -1.0
+            limit = self._return if self._may_come_back(away, innovation) else -1.0
         distance = correct(limit)
         if distance <= limit:
             mean = self.keep * tally.mean + self._weight * innovation[0] / _or_one(innovation[2])
@@ -142,9 +148,10 @@ class InnovationGate:
 
     def _followed(self, away: Away, innovation: Array) -> Away:
         """The same with one more sample."""
-        residual = innovation[0, : self._size]
+        residual, spread = innovation[0, : self._size], innovation[2, : self._size]
         change = residual - away.level
-        if self._squared(change, innovation) > self._jump:
+        std = np.hypot(innovation[1, : self._size], MOVES * spread)
+        if float(np.square(change / std).sum()) > self._jump:
             return Away(away.by, residual.copy(), CHANCES)
         return Away(away.by, away.level + LEVEL * change, max(away.chances - 1, 0))
 

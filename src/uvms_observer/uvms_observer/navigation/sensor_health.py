@@ -5,6 +5,8 @@ from enum import Enum
 
 from uvms_core.diagnostics import WARN, Trouble
 from uvms_observer.navigation.innovation_gate import Tally
+from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.state import NavigationState
 
 SILENT_PERIODS = 10.0
 """Periods without a sample after which a sensor is lost."""
@@ -19,6 +21,7 @@ class Health(Enum):
     SUSPECT = "suspect"  # its last samples were beyond the gate
     EXCLUDED = "excluded"  # several in a row were; none is used
     LOST = "lost"  # there have been no samples for long
+    OUT_OF_REACH = "out of reach"  # nor can there be any where the vehicle is
 
 
 def health_of(tally: Tally, silent_s: float, period_s: float) -> Health:
@@ -28,6 +31,13 @@ def health_of(tally: Tally, silent_s: float, period_s: float) -> Health:
     if tally.excluded:
         return Health.EXCLUDED
     return Health.SUSPECT if tally.row else Health.GOOD
+
+
+def excused(health: Health, measurement: Measurement, state: NavigationState) -> Health:
+    """The health, with a sensor that is silent as it must be told from one that is lost."""
+    if health is Health.LOST and measurement.out_of_reach(state):
+        return Health.OUT_OF_REACH
+    return health
 
 
 def joined(*troubles: Trouble | None) -> Trouble | None:

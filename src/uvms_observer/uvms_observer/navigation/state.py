@@ -60,9 +60,10 @@ class NavigationState(NamedTuple):
     covariance: Array  # (SIZE, SIZE) of the error state
     innovation: Array  # (3, WIDEST) of the last measurement: residual, std of its noise, its own
     # std; zeros beyond its size
-    target: Array = np.zeros(0)  # (7,) pose of the work object, see `target.py`; (0,): none
-    cross: Array = np.zeros((0, SIZE))  # (6, SIZE) covariance of its error with the error state
-    target_covariance: Array = np.zeros((0, 0))  # (6, 6) of its error
+    reference: Array  # (3,) m/s, velocity after the last correction by the DVL, see `dvl.py`
+    target: Array = np.zeros(0)  # (7 k,) poses of k targets, see `target.py`
+    cross: Array = np.zeros((0, SIZE))  # (6 k, SIZE) covariance of their errors with e
+    target_covariance: Array = np.zeros((0, 0))  # (6 k, 6 k) of their errors
 
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""
@@ -85,4 +86,5 @@ def empty_state() -> NavigationState:
         np.zeros(SIZE - FURTHER),
         np.zeros((SIZE, SIZE)),
         np.zeros((3, WIDEST)),
+        np.zeros(3),
     )

@@ -9,6 +9,7 @@ from typing import Any
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import ServerGoalHandle
 from rclpy.task import Future
+from std_srvs.srv import SetBool
 
 from uvms_core import diagnostics, topics
 from uvms_core.errors import UvmsError
@@ -21,6 +22,7 @@ from uvms_core.tick_gate import Tick
 from uvms_core.timeline import Jump
 from uvms_core.topics import Action
 from uvms_planner import MotionPlanner, PlannerConfig, PlannerStep
+from uvms_planner.nodes.turns import Turns
 from uvms_planner.part import PlannerPart
 from uvms_planner.proposal import Proposal
 
@@ -66,6 +68,8 @@ class MotionPlannerNode(PartNode):
         self._accepted = 0
         self._ready = Future(executor=self.executor)  # once there has been an odometry
         self._servers = [self._serve(action) for action in topics.ACTIONS]
+        self._turns = Turns(self._plan_tick)
+        self.create_service(SetBool, f"{self.role}/wait_for_goals", self._answer_wait)
         self._target: ToolTarget | None = None  # the newest, that no tick has taken
         self.listen(topics.END_EFFECTOR_TARGET, self._take_target)
 
@@ -74,6 +78,10 @@ class MotionPlannerNode(PartNode):
         return PlannerPart(self.vehicle, self.config(PlannerConfig), self.seed, self.period)
 
     def take_tick(self, tick: Tick) -> None:
+        """Plan, or wait for a goal with that."""
+        self._turns.take(tick)
+
+    def _plan_tick(self, tick: Tick) -> None:
         """Plan; every planner step is reported, and the goal's client hears of it."""
         self._lead(tick.stamp)
         super().take_tick(tick)
@@ -82,12 +90,27 @@ class MotionPlannerNode(PartNode):
             return
         if not self._ready.done():
             self._ready.set_result(None)
+            self._turns.goal_is_due()
         self._answer_goal(plan)
         self.report(tick.stamp, step_ms=self.step_ms, **plan.diagnostics())
+
+    def report(self, stamp: int, *args: Any, **values: Any) -> None:
+        """As every node; while ticks are kept it speaks of the last that was not."""
+        newest = min(stamp, self._stamp) if self._turns.is_waiting else stamp
+        super().report(newest, *args, **values)
 
     def more_counts(self) -> dict[str, int]:
         """Goals that were accepted, whoever sent them."""
         return {**super().more_counts(), diagnostics.GOALS_ACCEPTED: self._accepted}
+
+    def _answer_wait(self, request: SetBool.Request, response: SetBool.Response) -> Any:
+        """Whether to wait for a goal whenever there is none, which lockstep alone can."""
+        response.success = self.lockstep or not request.data
+        if response.success:
+            self.guard(partial(self._turns.wait, request.data))
+        else:
+            response.message = "in real time nobody waits: time goes on between two goals"
+        return response
 
     def _take_target(self, target: ToolTarget) -> None:
         self._target = target
@@ -109,6 +132,8 @@ class MotionPlannerNode(PartNode):
             newest.handle.publish_feedback(_filled(newest.type.Feedback(), plan.feedback))
         if self._begun and plan.finished is not None:
             self._begun.pop(0).outcome.set_result(plan.finished)
+            if plan.finished.success and not self._begun:
+                self._turns.goal_is_due()
 
     def _serve(self, action: Action) -> ActionServer:
         cls = action_class(action)
@@ -133,6 +158,7 @@ class MotionPlannerNode(PartNode):
         except UvmsError as fault:
             self.get_logger().error(f"goal rejected: {fault}")
             self.report(self._stamp, diagnostics.ERROR, str(fault))
+            self.guard(self._turns.goal_is_answered)
             return GoalResponse.REJECT
         self._accepted += 1
         return GoalResponse.ACCEPT
@@ -197,6 +223,7 @@ class MotionPlannerNode(PartNode):
     def _begin(self, cls: Any, handle: ServerGoalHandle) -> None:
         self._begun.append(_Begun(cls, handle, Future(executor=self.executor)))
         handle.execute(partial(self._execute, self._begun[-1]))
+        self.guard(self._turns.goal_is_answered)
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
         """Only the newest goal moves anything; those before it have ended."""
@@ -209,6 +236,7 @@ class MotionPlannerNode(PartNode):
         """Time has jumped: a goal in progress is aborted with that reason."""
         super().on_time_jump(jump)
         self._stamp = jump.after
+        self._turns.forget()
 
     async def _execute(self, begun: _Begun, handle: ServerGoalHandle) -> Any:
         finished = await begun.outcome

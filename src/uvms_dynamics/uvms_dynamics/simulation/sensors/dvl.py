@@ -32,7 +32,6 @@ class DvlSensor(SensorModel):
         self._scale = 1.0 + section.scale_error * self.rng.standard_normal()
         self._mount = misalignment(seed, self.type.name, section.misalignment_deg)
         self._seabed = vehicle.environment.seabed_depth_m
-        self._upright = math.cos(math.radians(section.max_tilt_deg or 180.0))
         if section.lock == WATER_LOCK:
             self._seabed = None  # it needs none
         self._can_lose = self._seabed is not None or section.max_tilt_deg is not None
@@ -75,10 +74,5 @@ class DvlSensor(SensorModel):
 
     def _has_bottom_lock(self, state: Array) -> bool:
         down = quat_to_matrix(state[QUATERNION:VELOCITY])[2]
-        if down[2] < self._upright:
-            return False
-        if self._seabed is None:
-            return True
-        altitude = self._seabed - (state[2] + float(down @ self._lever))
-        most = self._dvl.max_altitude_m or math.inf
-        return max(self._dvl.min_altitude_m, 0.0) <= altitude <= most
+        seabed = math.inf if self._seabed is None else self._seabed
+        return self._dvl.reaches(seabed - (state[2] + float(down @ self._lever)), down[2])

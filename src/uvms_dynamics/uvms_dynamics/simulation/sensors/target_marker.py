@@ -28,8 +28,6 @@ class TargetMarkerSensor(SensorModel):
         super().__init__(vehicle, section, period, seed)
         self._section = section
         self._lever, self._mount = np.array(section.position_m), section.sensor_axes
-        self._half_view = np.tan(np.radians(section.field_of_view_deg) / 2.0)
-        self._least_facing = np.cos(np.radians(section.max_view_angle_deg))
         place, turn = self.rng.standard_normal((2, 3))
         turn = np.radians(section.target_std_deg) * turn
         self.place: Array = np.array(section.target_position_m)
@@ -53,7 +51,7 @@ class TargetMarkerSensor(SensorModel):
         R_map_camera = R @ self._mount
         seen = R_map_camera.T @ (self.place - state[:3] - R @ self._lever)
         R_camera_marker = R_map_camera.T @ self.R_map_marker
-        if not self._in_view(seen, R_camera_marker[:, 2]):
+        if not section.recognises(seen, R_camera_marker[:, 2]):
             return None
         std = section.noise_m + section.noise_m_per_m * float(np.linalg.norm(seen))
         turn = np.radians(section.angle_noise_deg)
@@ -62,12 +60,3 @@ class TargetMarkerSensor(SensorModel):
         )
         spread = np.diag(np.repeat([std**2, turn**2], 3))
         return MarkerSample(trajectory.stamps[row], seen + std * noise[0], attitude, spread)
-
-    def _in_view(self, seen: Array, normal: Array) -> bool:
-        """Whether a marker at this place (3,) with this normal (3,), camera axes, is recognised."""
-        away, section = float(np.linalg.norm(seen)), self._section
-        if seen[2] <= 0.0 or not section.min_range_m <= away <= section.max_range_m:
-            return False
-        if (np.abs(seen[:2]) > self._half_view * seen[2]).any():
-            return False
-        return bool(-normal.dot(seen) >= self._least_facing * away)

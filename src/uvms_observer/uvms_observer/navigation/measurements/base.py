@@ -8,6 +8,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import NavigationState
 
@@ -43,6 +44,15 @@ class Measurement(ABC):
     def usable(self, sample: Any) -> bool:
         """Whether the sample says anything; a GPS under water does not."""
         return True
+
+    def out_of_reach(self, state: NavigationState) -> str:
+        """Why the sensor cannot be expected to give samples here; empty: it should."""
+        return ""
+
+    def place(self, state: NavigationState) -> Array:
+        """Where the sensor is, (3,) m, map_ned."""
+        place: Array = state.position + quat_to_matrix(state.quaternion) @ self.lever
+        return place
 
     def heading(self, sample: Any, level: Array) -> tuple[float, float] | None:
         """Heading (rad) and its variance, by which the filter can start; None: it says nothing.

@@ -1,4 +1,20 @@
-"""The Doppler velocity log: velocity of its transducer over ground, or through the water."""
+"""The Doppler velocity log: velocity of its transducer over ground, or through the water.
+
+What it tells of the errors is that of its reading,
+
+    du = A (dv + [v]x (dtheta + R dm) + v ds / (1 + s)):
+
+how much of it is the velocity's, and how much that of attitude, misalignment m and scale s, it does
+not tell. The estimated velocity v follows the sensor's noise, which would look like a motion that
+tells them apart: the filter would become certain of what it does not know, and the estimates would
+drift with the square of the noise. Hence H has the velocity after the last sample in the columns of
+m and s, which cannot be correlated with the noise of this one, and after a correction the
+velocity's error is taken anew such that du stays what it is. True accelerations tell nothing of m
+and s in this way; beside those of noise they tell next to nothing. Position fixes do.
+
+Consistency of extended Kalman filters: Huang, Mourikis and Roumeliotis (2010); errors that are
+those of what is observed: Barrau and Bonnabel (2017).
+"""
 
 import numpy as np
 
@@ -8,7 +24,7 @@ from uvms_core.vehicle.sensors import Dvl
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
-from uvms_observer.navigation.correction import correct, linearization_point
+from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.noise import as_white
@@ -25,9 +41,6 @@ from uvms_observer.navigation.state import (
 
 WATER_NOISE_M_S = 0.03
 """Std of the water's own motion in the layer that a sample looks into, m/s: waves, turbulence."""
-
-LOOSE = 5.0
-"""Velocity's std in those of the noise from which on a sample is linearized twice."""
 
 
 class DvlVelocity(Measurement):
@@ -51,7 +64,15 @@ class DvlVelocity(Measurement):
                 DVL_SCALE: float(np.square(section.scale_error)),
                 **dict.fromkeys(range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3), float(mounting**2)),
             }
+        self._section, self._seabed = section, vehicle.environment.seabed_depth_m
         self._as_white = as_white(float(np.hypot(section.scale_error, mounting)), section.rate_hz)
+
+    def out_of_reach(self, state: NavigationState) -> str:
+        """As `Measurement.out_of_reach`."""
+        in_water = self._section.lock == WATER_LOCK or self._seabed is None
+        altitude = np.inf if in_water else self._seabed - self.place(state)[2]
+        down = float(quat_to_matrix(state.quaternion)[2, 2])
+        return "" if self._section.reaches(altitude, down) else "no bottom within its range"
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
@@ -97,15 +118,16 @@ def velocity(
 ) -> tuple[Array, Array]:
     """Velocity that the DVL should read (3,) m/s, its own axes, and H."""
     R = quat_to_matrix(state.quaternion)
-    over = state.velocity.copy()
+    over, before = state.velocity.copy(), state.reference.copy()
     if in_water:
         for i in range(2):
             over[i] -= state.further[CURRENT - FURTHER + i]
-    mount = _mount(state)
+            before[i] -= state.further[CURRENT - FURTHER + i]
+    mount, turn = _mount(state), body_rate(state, rate)
     axes, arm = mount @ transposed(R), mount @ skew(lever)
-    reading, turned = axes @ over, axes @ skew(over)
-    swing, motion = arm @ body_rate(state, rate), _motion(R, over, lever, state, rate)
-    cross = skew(motion)
+    turned = axes @ skew(over)
+    motion, known = _motion(R, over, lever, turn), _motion(R, before, lever, turn)
+    reading, scaled, cross = mount @ motion, mount @ known, skew(known)
     scale = 1.0 + state.further[DVL_SCALE - FURTHER]
     H = np.zeros((3, SIZE))
     for i in range(3):
@@ -117,8 +139,8 @@ def velocity(
         if in_water:
             for k in range(2):
                 H[i, CURRENT + k] = -scale * axes[i, k]
-        H[i, DVL_SCALE] = reading[i] - swing[i]
-        reading[i] = scale * H[i, DVL_SCALE]
+        H[i, DVL_SCALE] = scaled[i]
+        reading[i] *= scale
     return reading, H
 
 
@@ -136,21 +158,12 @@ def _mount(state: NavigationState) -> Array:
 
 
 @exact_inner
-def _motion(R: Array, over: Array, lever: Array, state: NavigationState, rate: Array) -> Array:
-    """Velocity of the transducer (3,) m/s, body axes."""
-    motion, swing = transposed(R) @ over, skew(lever) @ body_rate(state, rate)
+def _motion(R: Array, over: Array, lever: Array, turn: Array) -> Array:
+    """Velocity of the transducer (3,) m/s, body axes, at the rate `turn`, rad/s."""
+    motion, swing = transposed(R) @ over, skew(lever) @ turn
     for i in range(3):
         motion[i] -= swing[i]
     return motion
-
-
-@exact_inner
-def _is_loose(P: Array, variance: float) -> bool:
-    """Whether a sample may change the velocity so much that it must be linearized after that.
-
-    How misalignment and scale show in a sample is a matter of the velocity.
-    """
-    return P[3, 3] + P[4, 4] + P[5, 5] > 3.0 * LOOSE**2 * variance
 
 
 @exact_kernel
@@ -173,11 +186,55 @@ def correct_velocity(
     for i in range(3):
         for k in range(3):
             N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
-    if _is_loose(state.covariance, variance):
-        point, e = linearization_point(state, H, residual, N)
-        residual, H = velocity(point, lever, rate, in_water)
-        subtract_from(measured, residual)
-        moved = H @ e
+    before = state.velocity.copy()
+    distance = correct(state, H, residual, N, gate)
+    if distance <= gate:
+        keep_reading(state, before)
+    return distance
+
+
+@exact_inner
+def keep_reading(state: NavigationState, before: Array) -> None:
+    """Take the velocity's error anew after its correction, so that it still says what was read.
+
+    See the module. In place: dv <- dv - [c]x dtheta - [b]x R dm - b ds / (1 + s), where the
+    velocity has changed by c since the filter came to the sample, and by b since the last one.
+
+    Args:
+        before: (3,) m/s, the velocity before the correction, map_ned.
+    """
+    P, R = state.covariance, quat_to_matrix(state.quaternion)
+    turn = skew(state.velocity - before)
+    b = state.velocity - state.reference
+    mount, scale = skew(b) @ R, 1.0 + state.further[DVL_SCALE - FURTHER]
+    T = np.empty((3, 7))  # by attitude, misalignment and scale
+    for i in range(3):
+        for k in range(3):
+            T[i, k], T[i, 3 + k] = turn[i, k], mount[i, k]
+        T[i, 6] = b[i] / scale
+        state.reference[i] = state.velocity[i]
+    changed = np.empty((3, SIZE))
+    for i in range(3):
+        for j in range(SIZE):
+            changed[i, j] = _mixed(T, P[j], i)
+    for i in range(3):
+        for j in range(SIZE):
+            P[3 + i, j] -= changed[i, j]
+    for j in range(SIZE):
         for i in range(3):
-            residual[i] += moved[i]
-    return correct(state, H, residual, N, gate)
+            changed[i, j] = _mixed(T, P[j], i)
+    for j in range(SIZE):
+        for i in range(3):
+            P[j, 3 + i] -= changed[i, j]
+    for j in range(state.cross.shape[0]):
+        for i in range(3):
+            state.cross[j, 3 + i] -= _mixed(T, state.cross[j], i)
+
+
+@exact_inner
+def _mixed(T: Array, errors: Array, i: int) -> float:
+    """Row i of T times errors of attitude, misalignment and scale."""
+    total = T[i, 6] * errors[DVL_SCALE]
+    for k in range(3):
+        total += T[i, k] * errors[6 + k] + T[i, 3 + k] * errors[DVL_MISALIGNMENT + k]
+    return total

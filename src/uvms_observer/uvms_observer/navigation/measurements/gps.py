@@ -32,6 +32,10 @@ class GpsPosition(Measurement):
         """Whether the receiver has a fix."""
         return sample.fix
 
+    def out_of_reach(self, state: NavigationState) -> str:
+        """As `Measurement.out_of_reach`."""
+        return "under water" if self.place(state)[2] > 0.0 else ""
+
     def correct(self, state: NavigationState, sample: GpsSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
         place = (sample.latitude_deg, sample.longitude_deg, sample.altitude)

@@ -21,6 +21,15 @@ class FixPosition(Measurement):
         vertical = section.vertical_noise_m or section.noise_m
         self._variance = np.array([section.noise_m, section.noise_m, vertical]) ** 2
         self._least = config.noise_floor.fix_m**2
+        self._section = section
+
+    def out_of_reach(self, state: NavigationState) -> str:
+        """As `Measurement.out_of_reach`."""
+        source, most = self._section.source_m, self._section.max_range_m
+        if source is None or most is None:
+            return ""
+        away = float(np.linalg.norm(self.place(state) - source))
+        return "out of range" if away > most else ""
 
     def correct(self, state: NavigationState, sample: FixSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""

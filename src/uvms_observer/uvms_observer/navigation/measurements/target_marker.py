@@ -13,6 +13,7 @@ Derivatives, the attitude's as a turn about the camera's axes:
 
 import numpy as np
 
+from uvms_core.errors import ConfigError
 from uvms_core.sensors.target_marker import MarkerSample, TargetMarker
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
@@ -30,13 +31,21 @@ from uvms_observer.navigation.correction import add_error, keep_innovation
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import SIZE, NavigationState
-from uvms_observer.navigation.target import TARGET_SIZE, is_known, move_target, with_target
-
-JOINT_SIZE = SIZE + TARGET_SIZE
+from uvms_observer.navigation.target import (
+    MOST_TARGETS,
+    POSE,
+    TARGET_SIZE,
+    is_known,
+    move_targets,
+    with_target,
+)
 
 
 class MarkerPose(Measurement):
-    """Pose of the target relative to the camera; the target's pose is part of the state."""
+    """Pose of the target relative to the camera; the target's pose is part of the state.
+
+    Each section has a target of its own, in the order of the vehicle file.
+    """
 
     size = 6
 
@@ -46,6 +55,13 @@ class MarkerPose(Measurement):
         floor = config.noise_floor
         least = np.repeat([floor.fix_m, np.radians(floor.attitude_deg)], 3)
         self._least = np.square(least)
+        markers = [each for each in vehicle.sensors.mounted.values() if type(each) is type(section)]
+        if len(markers) > MOST_TARGETS:
+            raise ConfigError(
+                f"the vehicle has {len(markers)} sensors of type target_marker; navigation keeps"
+                f" the poses of at most {MOST_TARGETS} targets: leave some out"
+            )
+        self._index = next(k for k, each in enumerate(markers) if each is section)
 
     def begin(self, state: NavigationState) -> NavigationState:
         """With the target where the vehicle file says, or nowhere yet."""
@@ -56,13 +72,28 @@ class MarkerPose(Measurement):
         place = np.array(section.target_position_m)
         return with_target(state, place, section.target_quaternion, np.square(std))
 
+    def out_of_reach(self, state: NavigationState) -> str:
+        """As `Measurement.out_of_reach`."""
+        if not is_known(state, self._index):
+            return "not seen yet"
+        seen, attitude, _ = sight(state, self.lever, self._mount, self._index)
+        normal = quat_to_matrix(attitude)[:, 2]
+        return "" if self._section.recognises(seen, normal) else "out of view"
+
     def correct(
         self, state: NavigationState, sample: MarkerSample, rate: Array, gate: float
     ) -> float:
         """As `Measurement.correct`; the first sight of an unknown target says where it is."""
         N = self._noise(sample)
         return correct_marker(
-            state, sample.position, sample.quaternion, N, self.lever, self._mount, gate
+            state,
+            sample.position,
+            sample.quaternion,
+            N,
+            self.lever,
+            self._mount,
+            self._index,
+            gate,
         )
 
     def _noise(self, sample: MarkerSample) -> Array:
@@ -79,21 +110,25 @@ class MarkerPose(Measurement):
 
 
 @exact_inner
-def sight(state: NavigationState, lever: Array, mount: Array) -> tuple[Array, Array, Array]:
-    """The expected place (3,) and attitude (4,) of the target, and H (6, SIZE + 6)."""
+def sight(
+    state: NavigationState, lever: Array, mount: Array, index: int
+) -> tuple[Array, Array, Array]:
+    """The expected place (3,) and attitude (4,) of a target, and H (6, SIZE + 6 k)."""
     R = quat_to_matrix(state.quaternion)
     to_camera = transposed(R @ mount)
     offset, arm = R @ lever, np.empty(3)
     for i in range(3):
-        arm[i] = state.target[i] - state.position[i]
+        arm[i] = state.target[POSE * index + i] - state.position[i]
         offset[i] = arm[i] - offset[i]
-    attitude = quat_multiply(matrix_to_quat(to_camera), state.target[3:7])
-    turn, H = to_camera @ skew(arm), np.zeros((6, JOINT_SIZE))
+    pose = state.target[POSE * index + 3 : POSE * (index + 1)]
+    attitude = quat_multiply(matrix_to_quat(to_camera), pose)
+    turn, H = to_camera @ skew(arm), np.zeros((6, SIZE + state.cross.shape[0]))
+    own = SIZE + TARGET_SIZE * index
     for i in range(3):
         for k in range(3):
-            H[i, k], H[i, SIZE + k] = -to_camera[i, k], to_camera[i, k]
+            H[i, k], H[i, own + k] = -to_camera[i, k], to_camera[i, k]
             H[i, 6 + k] = turn[i, k]
-            H[3 + i, 6 + k], H[3 + i, SIZE + 3 + k] = -to_camera[i, k], to_camera[i, k]
+            H[3 + i, 6 + k], H[3 + i, own + 3 + k] = -to_camera[i, k], to_camera[i, k]
     return to_camera @ offset, attitude, H
 
 
@@ -105,14 +140,15 @@ def correct_marker(
     N: Array,
     lever: Array,
     mount: Array,
+    index: int,
     gate: float,
 ) -> float:
-    """Pose of the target in the camera's axes, noise (6, 6), camera's lever arm and axes (3, 3)."""
-    if not is_known(state):
-        first_sight(state, position, quaternion, N, lever, mount)
+    """Pose of a target in the camera's axes, noise (6, 6), camera's lever arm and axes (3, 3)."""
+    if not is_known(state, index):
+        first_sight(state, position, quaternion, N, lever, mount, index)
         keep_innovation(state.innovation, np.zeros(6), N, N)  # nothing was expected
         return 0.0
-    place, attitude, H = sight(state, lever, mount)
+    place, attitude, H = sight(state, lever, mount, index)
     turned = quat_to_rotation_vector(quat_multiply(quaternion, quat_conjugate(attitude)))
     residual = np.empty(6)
     for i in range(3):
@@ -132,22 +168,23 @@ def correct_marker(
     _take_covariance(state, P, K, H, N)
     e = K @ residual
     add_error(state, e)
-    move_target(state, e[SIZE:JOINT_SIZE])
+    move_targets(state, e[SIZE:])
     return distance
 
 
 @exact_inner
 def _joint_covariance(state: NavigationState) -> Array:
-    """Covariance (SIZE + 6, SIZE + 6) of the vehicle's state and of the target's pose."""
-    P = np.empty((JOINT_SIZE, JOINT_SIZE))
+    """Covariance (SIZE + 6 k, SIZE + 6 k) of the vehicle's state and of the targets' poses."""
+    more = state.cross.shape[0]
+    P = np.empty((SIZE + more, SIZE + more))
     for i in range(SIZE):
         for j in range(SIZE):
             P[i, j] = state.covariance[i, j]
-    for i in range(TARGET_SIZE):
+    for i in range(more):
         for j in range(SIZE):
             P[SIZE + i, j] = state.cross[i, j]
             P[j, SIZE + i] = state.cross[i, j]
-        for j in range(TARGET_SIZE):
+        for j in range(more):
             P[SIZE + i, SIZE + j] = state.target_covariance[i, j]
     return P
 
@@ -156,11 +193,11 @@ def _joint_covariance(state: NavigationState) -> Array:
 def _take_covariance(state: NavigationState, P: Array, K: Array, H: Array, N: Array) -> None:
     """Joseph form, back into the state's three parts."""
     left = K @ H
-    for i in range(JOINT_SIZE):
-        for j in range(JOINT_SIZE):
+    for i in range(P.shape[0]):
+        for j in range(P.shape[0]):
             left[i, j] = (1.0 if i == j else 0.0) - left[i, j]
     kept, added = (left @ P) @ transposed(left), (K @ N) @ transposed(K)
-    for i in range(JOINT_SIZE):
+    for i in range(P.shape[0]):
         for j in range(i + 1):
             mean = 0.5 * ((kept[i, j] + added[i, j]) + (kept[j, i] + added[j, i]))
             if i < SIZE:
@@ -175,11 +212,18 @@ def _take_covariance(state: NavigationState, P: Array, K: Array, H: Array, N: Ar
 
 @exact_inner
 def first_sight(
-    state: NavigationState, position: Array, quaternion: Array, N: Array, lever: Array, mount: Array
+    state: NavigationState,
+    position: Array,
+    quaternion: Array,
+    N: Array,
+    lever: Array,
+    mount: Array,
+    index: int,
 ) -> None:
     """The target is where it is seen: p_T = p + R d + R_c z, R_T = R_c R_z.
 
-    With r = p_T - p: dp_T = dp - [r]x dtheta - R_c n, dtheta_T = dtheta - R_c n.
+    With r = p_T - p: dp_T = dp - [r]x dtheta - R_c n, dtheta_T = dtheta - R_c n. What another
+    target has in common with the vehicle it has in common with this one.
     """
     R = quat_to_matrix(state.quaternion)
     R_camera = R @ mount
@@ -187,11 +231,11 @@ def first_sight(
     arm = np.empty(3)
     for i in range(3):
         arm[i] = moved[i] + seen[i]
-        state.target[i] = state.position[i] + arm[i]
+        state.target[POSE * index + i] = state.position[i] + arm[i]
     attitude = quat_multiply(matrix_to_quat(R_camera), quaternion)
     G, L, cross_arm = np.zeros((6, SIZE)), np.zeros((6, 6)), skew(arm)
     for i in range(4):
-        state.target[3 + i] = attitude[i]
+        state.target[POSE * index + 3 + i] = attitude[i]
     for i in range(3):
         G[i, i] = 1.0
         G[3 + i, 6 + i] = 1.0
@@ -200,10 +244,15 @@ def first_sight(
             L[i, k], L[3 + i, 3 + k] = R_camera[i, k], R_camera[i, k]
     common = G @ state.covariance
     own, noise = common @ transposed(G), (L @ N) @ transposed(L)
+    others, first = G @ transposed(state.cross), TARGET_SIZE * index
     for i in range(TARGET_SIZE):
+        for j in range(state.cross.shape[0]):
+            state.target_covariance[first + i, j] = others[i, j]
+            state.target_covariance[j, first + i] = others[i, j]
         for j in range(SIZE):
-            state.cross[i, j] = common[i, j]
+            state.cross[first + i, j] = common[i, j]
+    for i in range(TARGET_SIZE):
         for j in range(TARGET_SIZE):
-            state.target_covariance[i, j] = 0.5 * (own[i, j] + own[j, i]) + 0.5 * (
+            state.target_covariance[first + i, first + j] = 0.5 * (own[i, j] + own[j, i]) + 0.5 * (
                 noise[i, j] + noise[j, i]
             )
