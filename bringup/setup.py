@@ -60,6 +60,7 @@ setup(
             "fields = uvms_bringup.commands.fields:COMMAND",
             "navigate = uvms_bringup.commands.navigate:COMMAND",
             "replay = uvms_bringup.commands.replay:COMMAND",
+            "report = uvms_bringup.commands.report:COMMAND",
             "run = uvms_bringup.commands.run:COMMAND",
             "simulate = uvms_bringup.commands.simulate:COMMAND",
             "tune = uvms_bringup.commands.tune:COMMAND",

@@ -20,7 +20,7 @@ EXAMPLES = """examples:
   uvms run manipulation                        the 900 s manipulation on six ROS 2 nodes
   uvms run arm_swing --set control.observer=false --output runs/without_observer
   uvms simulate hover --seed 3 --duration 20   the same loop in one process, without ROS
-  uvms report runs/without_observer/run.mcap   figures and a page about a run
+  uvms report runs/without_observer/run.mcap   a page about a run, with plots and 3-D
   uvms campaign observer_study                 many runs on all cores, judged by requirements
   uvms compare runs/one runs/two               two runs side by side
   uvms replay runs/without_observer/run.mcap --into controller

@@ -21,3 +21,7 @@ class CampaignError(BringupError):
 
 class ViewError(BringupError):
     """A view of a run cannot be shown or written."""
+
+
+class ReportError(BringupError):
+    """A report cannot be made as it was asked for."""

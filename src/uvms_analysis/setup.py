@@ -10,7 +10,7 @@ setup(
     license="Apache-2.0",
     python_requires=">=3.10",
     packages=find_packages(include=[PACKAGE, f"{PACKAGE}.*"]),
-    package_data={PACKAGE: ["py.typed", "**/*.html", "**/*.css", "**/*.js"]},
+    package_data={PACKAGE: ["py.typed", "**/*.html", "**/*.css", "**/*.js", "**/LICENSE"]},
     data_files=[
         ("share/ament_index/resource_index/packages", [f"resource/{PACKAGE}"]),
         (f"share/{PACKAGE}", ["package.xml"]),
@@ -34,7 +34,6 @@ setup(
             "identify = uvms_analysis.commands.identify:COMMAND",
             "info = uvms_analysis.commands.info:COMMAND",
             "recover = uvms_analysis.commands.recover:COMMAND",
-            "report = uvms_analysis.commands.report:COMMAND",
             "topics = uvms_analysis.commands.topics:COMMAND",
             "validate = uvms_analysis.commands.validate:COMMAND",
         ],

@@ -38,7 +38,7 @@ def judged(path, whole, tmp_path):
     json.dumps(check.to_json(), allow_nan=False)
     summary = summarise(log, wall_s=0.0)
     json.dumps(summary)
-    page = write_page(tmp_path / "report.html", log, summary, []).read_text(encoding="utf-8")
+    page = write_page(tmp_path / "report.html", log, summary).read_text(encoding="utf-8")
     assert f"Outcome: {summary['outcome']}" in page
     if summary["outcome"] == "completed":
         assert check.complete

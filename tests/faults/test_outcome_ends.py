@@ -62,7 +62,7 @@ def test_incidents_are_told_and_do_not_decide(run, tmp_path):
     assert summary["incidents"] == ["controller was started again"]
     assert summary["check"]["notes"] == ["controller was started again"]
     assert "incident: controller was started again" in summary_text(summary)
-    page = write_page(tmp_path / "report.html", RunLog.open(path), summary, [])
+    page = write_page(tmp_path / "report.html", RunLog.open(path), summary)
     assert "Incident: controller was started again." in page.read_text(encoding="utf-8")
 
 

@@ -1,15 +1,18 @@
-"""Runs side by side: what differs, in which unit, and a page with the figures."""
+"""Runs side by side: what differs, in which unit, and a page with the plots."""
 
 import json
 import re
 
 import pytest
+from report_data import page_data
 from synthetic import Known, write_log
 
 from uvms_analysis.compare import compare
 from uvms_analysis.compare.compare import names_of
+from uvms_analysis.compare.page import best_of
 from uvms_analysis.compare.table import as_text, differences, unit
 from uvms_analysis.errors import LogError
+from uvms_analysis.report.metrics import BY_KEY
 from uvms_analysis.summary import summarise
 from uvms_bringup.cli import main
 
@@ -32,17 +35,21 @@ def test_runs_are_compared_by_folder_or_by_file(logs, tmp_path):
     assert rows["end_effector_target"] == ("path", "reference")
     assert "roll_deg.max" not in rows  # the same in both
     page = found.page.read_text()
-    assert page.count("data:image/png;base64,") == 4
-    assert not re.findall(r'(?:src|href)="(?!data:)', page)
-    assert len(list((tmp_path / "out").glob("compare_*.png"))) == 4
+    assert not re.findall(r'(?:src|href)="(?!data:|#)', page)
+    plot = page_data(page)["plots"]["roll"]
+    assert [line["name"] for line in plot["lines"]] == ["one: true", "two: true"]
+    assert [line["colour"] for line in plot["lines"]] == [0, 1]
 
 
-def test_a_figure_that_a_log_does_not_allow_says_why(logs, tmp_path):
+def test_a_plot_that_a_log_does_not_allow_says_why(logs, tmp_path):
     from uvms_analysis.log.writer import LogWriter
 
     LogWriter(tmp_path / "empty" / "run.mcap").close()
     found = compare([logs / "one", tmp_path / "empty"], tmp_path / "out")
-    assert "No figure: log" in found.page.read_text()
+    page = found.page.read_text()
+    assert "No figure: empty: has no topic" in page
+    assert "not shown: empty: not in its log" in page
+    assert [line["name"] for line in page_data(page)["plots"]["roll"]["lines"]] == ["one: true"]
 
 
 def test_the_summary_beside_a_log_is_used(logs, tmp_path):
@@ -50,6 +57,29 @@ def test_the_summary_beside_a_log_is_used(logs, tmp_path):
     rows = {row.name: row for row in compare([logs / "one", logs / "two"], tmp_path).rows}
     (logs / "two" / "summary.json").unlink()
     assert rows["wall_s"].values == (None, 7.0)
+
+
+def test_the_best_is_one_of_the_completed_runs_and_nobody_where_all_are_alike():
+    low, high = BY_KEY["roll_deg.max"], BY_KEY["authority_left"]
+    neither = BY_KEY["external.force_rms_n"]
+    assert best_of(low, [3.0, 2.0, 1.0], [True, True, False]) == (1,)
+    assert best_of(high, [3.0, 2.0, 1.0], [True, True, True]) == (0,)
+    assert best_of(low, [3.0, 1.0, 1.0], [True, True, True]) == (1, 2)
+    assert best_of(low, [1.0, 1.0], [True, True]) == ()
+    assert best_of(low, [None, 1.0], [True, True]) == ()
+    assert best_of(neither, [1.0, 2.0], [True, True]) == ()
+
+
+def test_the_page_tells_differences_from_the_first_run(tmp_path):
+    for name, roll in (("calm", 2.0), ("rolling", 3.0)):
+        write_log(tmp_path / name / "run.mcap", Known(duration=6.0, roll_deg=roll))
+        beside = summarise(tmp_path / name / "run.mcap", wall_s=1.0)
+        beside |= {"outcome": "completed", "completed": True, "reasons": []}
+        (tmp_path / name / "summary.json").write_text(json.dumps(beside))
+    page = compare([tmp_path / "calm", tmp_path / "rolling"], tmp_path).page.read_text()
+    row = re.search(r'<th scope="row">roll, greatest, deg</th>(.*?)</tr>', page).group(1)
+    assert "★ best: 2<" in row
+    assert "3 (+1, +50 %)" in row
 
 
 def test_differences_units_and_ratio():

@@ -4,13 +4,13 @@ import numpy as np
 import pytest
 from synthetic import ARM, Known, write_log
 
-from uvms_analysis.analysis import Analysis
 from uvms_analysis.clearance import run_geometry
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.log.writer import LogWriter
-from uvms_analysis.report.clearance_figure import clearance
+from uvms_analysis.report.plots.attitude import clearance
 from uvms_analysis.report.posture import OBSTACLE, obstacle_shapes
 from uvms_analysis.report.raycast import Camera, render
+from uvms_analysis.report.run import ReportedRun
 from uvms_analysis.summary import summarise
 from uvms_core.scene import Obstacle
 from uvms_core.vehicle import load_vehicle
@@ -64,10 +64,14 @@ def test_a_damaged_scene_is_said_and_the_rest_stays(log_file, tmp_path):
     assert "one of sphere, box" in summary["missing"]["clearance_m"]
 
 
-def test_the_figure_has_the_pairs_that_come_closest(log_file):
-    figure = clearance(Analysis(RunLog.open(log_file)))
-    labels = [line.get_label() for line in figure.axes[0].get_lines()]
-    assert "upper_arm and hull" in labels
+def test_the_plot_has_the_pairs_that_come_closest(log_file):
+    geometry = build_geometry(load_vehicle())
+    there = clearances(geometry, np.array([0.0, 0.0, 10.0, 0.0, *ARM]))
+    (panel,) = clearance(ReportedRun("one", RunLog.open(log_file), {}))
+    lines = {line.name: line.values for line in panel.lines}
+    assert "upper_arm and hull" in lines
+    assert lines["least, true"] == pytest.approx(there.min(), abs=1e-9)
+    assert lines["least, planned"] == pytest.approx(there.min(), abs=1e-9)
 
 
 def test_a_box_is_seen_as_its_outline():

@@ -57,6 +57,7 @@ class Tab:
         self._socket = connect(address, max_size=None)
         self._numbers = itertools.count(1)
         self.complaints = []
+        self.requests = []
         for domain in ("Page", "Runtime", "Log", "Network"):
             self.call(f"{domain}.enable")
 
@@ -73,6 +74,8 @@ class Tab:
 
     def _note(self, report):
         what = report.get("method")
+        if what == "Network.requestWillBeSent":
+            self.requests.append(report["params"]["request"]["url"])
         if what == "Runtime.exceptionThrown":
             self.complaints.append(report["params"]["exceptionDetails"].get("exception"))
         elif what == "Log.entryAdded" and report["params"]["entry"]["level"] == "error":
@@ -115,6 +118,22 @@ class Tab:
         if file is not None:
             Path(file).write_bytes(data)
         return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+
+    def key(self, name, code=0, text="", modifiers=0):
+        """A key of the keyboard, pressed and released; `code` as browsers number them."""
+        common = {"key": name, "windowsVirtualKeyCode": code, "modifiers": modifiers}
+        self.call("Input.dispatchKeyEvent", type="keyDown", text=text, **common)
+        self.call("Input.dispatchKeyEvent", type="keyUp", **common)
+
+    def width(self, pixels, height=1000):
+        """Give the page a size."""
+        self.call("Emulation.setDeviceMetricsOverride", width=pixels, height=height,
+                  deviceScaleFactor=1, mobile=False)  # fmt: skip
+
+    def colours(self, scheme):
+        """What the user prefers: `light` or `dark`."""
+        wanted = [{"name": "prefers-color-scheme", "value": scheme}]
+        self.call("Emulation.setEmulatedMedia", features=wanted)
 
     def click(self, x, y):
         """A click of the left button, pixels."""

@@ -289,6 +289,22 @@ class Analysis:
         return time[index], self.truth.position[index] - np.column_stack(columns)
 
     @cached_property
+    def joint_error_deg(self) -> tuple[Array, Array]:
+        """Time (k,) and true minus planned joint angles (k, n), degrees.
+
+        Raises:
+            LogError: there is no reference.
+        """
+        plan = self.planned
+        if plan is None:
+            raise LogError(f"log {self.log.path}: has no reference")
+        time = self.joints.time
+        index = np.flatnonzero((time >= plan.time[0]) & (time <= plan.time[-1]))
+        wanted = [np.interp(time[index], plan.time, column) for column in plan.q.T]
+        error = self.joints.position[index] - np.column_stack(wanted)
+        return time[index], np.rad2deg(error)
+
+    @cached_property
     def planner_step_ms(self) -> Array:
         """Computing time of the planner's steps."""
         values = [status.number("step_ms") for status in self.log.statuses(topics.MOTION_PLANNER)]

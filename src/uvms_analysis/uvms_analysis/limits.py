@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from uvms_analysis.analysis import Analysis, at_common_stamps
+from uvms_analysis.analysis import Analysis
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_core.checks import ATTITUDE_DEG
@@ -176,14 +176,12 @@ def arm(run: Analysis) -> str:
     plan = run.planned
     if plan is None or not len(plan):
         return ""
-    joints, _ = at_common_stamps(run.joints, run.truth)
-    inside = (joints.time >= plan.time[0]) & (joints.time <= plan.time[-1])
-    if not inside.any():
+    time, errors = run.joint_error_deg
+    if not len(time):
         return ""
-    wanted = [np.interp(joints.time[inside], plan.time, column) for column in plan.q.T]
-    error = np.rad2deg(np.abs(joints.position[inside] - np.column_stack(wanted)).max(axis=1))
+    error = np.abs(errors).max(axis=1)
     what = f"the joints were within {JOINTS.near:g} deg of their plan"
-    return _kept(what, joints.time[inside], error, JOINTS, error)
+    return _kept(what, time, error, JOINTS, error)
 
 
 def _kept(what: str, time: Array, beyond: Array, band: Band, error: Array) -> str:

@@ -12,12 +12,12 @@ def add_arguments(parser: ArgumentParser) -> None:
         "--output",
         default="compare",
         metavar="DIR",
-        help="folder of figures and page (default: compare)",
+        help="folder of the page (default: compare)",
     )
 
 
 def run(options: Namespace) -> int:
-    """Print the fields that differ, and where the page with the figures is."""
+    """Print the fields that differ, and where the page with the plots is."""
     from shutil import get_terminal_size
 
     from uvms_analysis.compare import compare
@@ -32,4 +32,4 @@ def run(options: Namespace) -> int:
     return 0
 
 
-COMMAND = Command("runs side by side: a table of what differs, figures, a page", add_arguments, run)
+COMMAND = Command("runs side by side: a table of what differs, and a page", add_arguments, run)

@@ -1,4 +1,4 @@
-"""`uvms compare`: runs side by side, as a table of their summaries and as figures laid over."""
+"""`uvms compare`: runs side by side, as a table of their summaries and as a page."""
 
 from uvms_analysis.compare.compare import Compared, compare
 

@@ -1,4 +1,4 @@
-"""Runs side by side: their logs, summaries, table, figures and page."""
+"""Runs side by side: their logs, summaries, table and page."""
 
 import json
 from collections.abc import Mapping, Sequence
@@ -6,7 +6,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import Check, check_log
 from uvms_analysis.compare import page
 from uvms_analysis.compare.table import SCENARIO, VEHICLE, Row, differences
@@ -14,6 +13,7 @@ from uvms_analysis.errors import LogError
 from uvms_analysis.flat import flatten
 from uvms_analysis.log.locate import log_path
 from uvms_analysis.log.read import RunLog
+from uvms_analysis.report.run import ReportedRun
 from uvms_analysis.summary import summarise
 
 SUMMARY_FILE = "summary.json"
@@ -34,7 +34,7 @@ class Compared:
 
 
 def compare(runs: Sequence[str | Path], output: str | Path) -> Compared:
-    """Compare runs, given by their folders or logs; writes figures and `compare.html`.
+    """Compare runs, given by their folders or logs; writes `compare.html`.
 
     Raises:
         LogError: there are fewer than two, a log cannot be read, or the folder not be written.
@@ -56,8 +56,11 @@ def compare(runs: Sequence[str | Path], output: str | Path) -> Compared:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as fault:
         raise LogError(f"{folder}: cannot be written: {fault.strerror}") from fault
-    analyses = dict(zip(names, map(Analysis, logs), strict=True))
-    return Compared(names, rows, warnings, page.write(folder, analyses, rows, warnings))
+    reported = [
+        ReportedRun(name, log, summary)
+        for name, log, (summary, _) in zip(names, logs, found, strict=True)
+    ]
+    return Compared(names, rows, warnings, page.write_page(folder, reported, rows, warnings))
 
 
 def _log_of(run: str | Path) -> Path:

@@ -82,6 +82,7 @@ class RunLog:
         for number, channel in records.channels.items():
             self._numbers.setdefault(channel.topic, []).append(number)
         self._signals: dict[str, list[Any]] = {}
+        self._series: dict[str, Series] = {}
         self._read: dict[str, Any] = {}
         self.known_stamps: dict[str, array] = {}
         """Log times by full topic name where they are known beforehand: of these topics `entries`
@@ -283,6 +284,11 @@ class RunLog:
         Raises:
             LogError: the log has no such topic, or no valid message of it.
         """
+        if topic.name not in self._series:
+            self._series[topic.name] = self._make_series(topic)
+        return self._series[topic.name]
+
+    def _make_series(self, topic: Topic) -> Series:
         signals = self.signals(topic)
         if signals and isinstance(signals[0], int):  # a clock
             return Series(np.array(signals, dtype=np.int64), {}, topic.name)

@@ -1,72 +1,36 @@
-"""`uvms report`: figures of a run in the style of the paper's Figs. 7-9, and a page about it."""
+"""`uvms report`: a page about a run, or about several side by side, and a picture in 3-D."""
 
+import io
 import json
 from collections.abc import Callable
 from functools import partial
 from pathlib import Path
 
-from matplotlib.figure import Figure
-
 from uvms_analysis.analysis import Analysis
 from uvms_analysis.errors import LogError, determine
 from uvms_analysis.log.read import RunLog
-from uvms_analysis.report import force_figures, motion_figures, style
-from uvms_analysis.report.clearance_figure import clearance
-from uvms_analysis.report.disturbance_figure import planned_disturbance
-from uvms_analysis.report.page import Picture, write_page
+from uvms_analysis.report import style
+from uvms_analysis.report.page import Pictures, write_page
+from uvms_analysis.report.run import ReportedRun
 from uvms_analysis.report.scene import draw_scene, scene
-from uvms_analysis.report.stability_figure import stability
+from uvms_analysis.report.shown import show
 from uvms_analysis.summary import summarise
 
-__all__ = ["FIGURES", "draw_scene", "report"]
+__all__ = ["PAGE", "draw_scene", "report"]
 
-FIGURES: dict[str, tuple[str, Callable[[Analysis], Figure]]] = {
-    "scene": (
-        "The vehicle at work. Ghosts: other postures; tube: true path of the tool, enlarged in the "
-        "corner; arrows: thrusts and disturbance at the time of the solid posture.",
-        scene,
-    ),
-    "end_effector": (
-        "End effector: true position against its target, and the error between them.",
-        motion_figures.end_effector,
-    ),
-    "joints": ("Joint angles, true and as planned.", motion_figures.joints),
-    "attitude": ("Attitude of the vehicle, true and estimated.", motion_figures.attitude),
-    "vehicle": ("Pose of the vehicle, true and as planned.", motion_figures.vehicle),
-    "clearance": (
-        "Distances of bodies that must not touch, true and as planned; those that come closest.",
-        clearance,
-    ),
-    "self_disturbance": (
-        "Self-disturbance: restoring and coupling wrench on the vehicle, body frame. "
-        "Grey: as observed.",
-        force_figures.self_disturbance,
-    ),
-    "planned_disturbance": (
-        "Self-disturbance as planned and as it was: restoring plus coupling wrench on the vehicle, "
-        "body frame.",
-        planned_disturbance,
-    ),
-    "stability": (
-        "Stability of the vehicle's loop by the controller's own account: Lyapunov function of "
-        "eq. (27), its rate, and both sides of the condition below eq. (29), which is sufficient "
-        "and not necessary.",
-        stability,
-    ),
-    "thrusters": ("Thrust as allocated; dotted: limits.", force_figures.thrusters),
-    "navigation": (
-        "Estimated minus true position, with the filter's own standard deviation.",
-        force_figures.navigation,
-    ),
-}
+PAGE = "report.html"
+
+Scene = Callable[[Path], str]
+"""Makes a self-contained HTML page of a log, with the motion in 3-D; LogError where it cannot."""
 
 
-def report(log: str | Path, output: str | Path | None = None) -> Path:
-    """Draw all figures of a log and write `report.html`; returns the page.
+def report(log: str | Path, output: str | Path | None = None, in_3d: Scene | None = None) -> Path:
+    """Write `report.html` about a log: self-contained, with interactive plots; returns it.
 
     Args:
         log: MCAP file of a run.
-        output: folder for figures and page; None: the log's own.
+        output: folder of the page; None: the log's own.
+        in_3d: makes the 3-D page that is embedded; None: there is none.
 
     Raises:
         LogError: the log cannot be read, or the folder cannot be written.
@@ -78,8 +42,8 @@ def report(log: str | Path, output: str | Path | None = None) -> Path:
     except OSError as fault:
         raise LogError(f"{folder}: cannot be written: {fault.strerror}") from fault
     summary = summarise(run, wall_s=_wall_s(run))
-    pictures = _draw(Analysis(run), folder)
-    return write_page(folder / "report.html", run, summary, pictures)
+    shown = show([ReportedRun(run.path.stem, run, summary)])
+    return write_page(folder / PAGE, run, summary, shown, _pictures(run, in_3d))
 
 
 def _wall_s(run: RunLog) -> float | None:
@@ -91,19 +55,23 @@ def _wall_s(run: RunLog) -> float | None:
         return None
 
 
-def _draw(run: Analysis, folder: Path) -> list[Picture]:
-    pictures = []
-    for name, (caption, draw) in FIGURES.items():
-        path = folder / f"{name}.png"
+def _pictures(run: RunLog, in_3d: Scene | None) -> Pictures:
+    reasons = []
+    picture = page = None
+    try:
+        picture = determine(partial(_drawn, run))
+    except LogError as fault:
+        reasons.append(f"No picture: {fault}")
+    if in_3d is not None:
         try:
-            with style.settings():
-                determine(partial(_save, draw, run, path))
+            page = determine(lambda: in_3d(run.path))
         except LogError as fault:
-            pictures.append(Picture(name, caption, None, str(fault)))
-        else:
-            pictures.append(Picture(name, caption, path))
-    return pictures
+            reasons.append(f"Not in 3-D: {fault}")
+    return Pictures(picture, page, tuple(reasons))
 
 
-def _save(draw: Callable[[Analysis], Figure], run: Analysis, path: Path) -> None:
-    draw(run).savefig(path)
+def _drawn(run: RunLog) -> bytes:
+    data = io.BytesIO()
+    with style.settings():
+        scene(Analysis(run)).savefig(data, format="png")
+    return data.getvalue()

@@ -1,159 +1,198 @@
-"""The page about a run: one self-contained HTML file."""
+"""The page about a run, or about several: one self-contained HTML file."""
 
 import base64
-import html
+import json
+import math
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.flat import flatten
 from uvms_analysis.log.read import RunLog
+from uvms_analysis.report import sections
+from uvms_analysis.report.facts import Facts
+from uvms_analysis.report.html import escaped, folded, note, number, table
+from uvms_analysis.report.questions import QUESTIONS, Question
+from uvms_analysis.report.run import ReportedRun
+from uvms_analysis.report.shown import Shown
 
-CSS = Path(__file__).with_name("page.css")
+HERE = Path(__file__).parent
+CSS = HERE / "page.css"
+SCRIPTS = (HERE / "uplot" / "uPlot.iife.min.js", HERE / "values.js", HERE / "drawing.js",
+           HERE / "page.js")  # fmt: skip
+PLOT_CSS = HERE / "uplot" / "uPlot.min.css"
+
+CONTROLS = """
+<form class="window" aria-label="Time that the plots show">
+<label>plots from <input id="from" type="number" step="any" inputmode="decimal"> s</label>
+<label>to <input id="to" type="number" step="any" inputmode="decimal"> s</label>
+<button type="submit">Show</button><button type="reset">Whole run</button>
+<output id="now" aria-live="off"></output></form>
+"""
+HELP = (
+    "Drag over a plot to zoom in; all plots follow. Double-click shows the whole run again. With"
+    " the keyboard: Tab to a plot, then ← → move the cursor (Shift: ten times as far), + − zoom"
+    " around it, Home shows the whole run. Buttons below a plot hide its lines."
+)
 
 
 @dataclass(frozen=True)
-class Picture:
-    """A figure with its caption, or the reason why it is missing."""
+class Pictures:
+    """What a page shows of the vehicle: a picture (PNG), and a page with its motion in 3-D.
 
-    name: str
-    caption: str
-    file: Path | None
-    reason: str = ""
+    Either may be missing; then the reason, where there is one, is shown.
+    """
+
+    picture: bytes | None = None
+    scene: str | None = None
+    reasons: tuple[str, ...] = ()
 
 
-def write_page(path: Path, log: RunLog, summary: dict[str, Any], pictures: list[Picture]) -> Path:
-    """Write the page and return its path."""
-    seed = "unknown" if summary["seed"] is None else summary["seed"]
-    title = f"{summary['scenario'] or log.path.stem}, seed {seed}"
-    body = [
-        _head(title),
-        _banner(summary),
-        _notes(summary),
-        _cards(summary),
-        *(_figure(picture) for picture in pictures),
-        "<h2>Summary</h2>",
-        _table(flatten(summary)),
-        "<h2>About the run</h2>",
-        _table(dict(log.run) | {"log": log.path.name}),
-        *(_details(name, log) for name in ("config.yaml", "vehicle.yaml")),
+def write_page(
+    path: Path,
+    log: RunLog,
+    summary: Mapping[str, Any],
+    shown: Shown | None = None,
+    pictures: Pictures = Pictures(),
+) -> Path:
+    """Write the page about a run and return its path; without `shown` it has no plots."""
+    run = ReportedRun(log.path.stem, log, summary)
+    shown = shown or Shown()
+    data = shown.data(_marks(summary))
+    body = "".join((*_body(run, shown, pictures), embedded(data, pictures.scene)))
+    return write(path, document(run.title, body, [("did-it-work", "Did it work?"), *links()]))
+
+
+def _marks(summary: Mapping[str, Any]) -> list[dict[str, Any]]:
+    """Events whose time is known; JSON has no NaN."""
+    return [
+        {"time": event["at_s"], "text": event["text"]}
+        for event in summary["events"] or ()
+        if math.isfinite(event["at_s"])
     ]
-    try:
-        path.write_text(_document(title, "\n".join(body)), encoding="utf-8", errors="replace")
-    except OSError as fault:
-        raise LogError(f"{path}: cannot be written: {fault.strerror}") from fault
-    return path
 
 
-def _document(title: str, body: str) -> str:
-    style = CSS.read_text(encoding="utf-8")
-    return (
-        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
-        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
-        f"<title>{html.escape(title)}</title>\n<style>\n{style}</style>\n</head>\n"
-        f"<body>\n<main>\n{body}\n</main>\n</body>\n</html>\n"
-    )
-
-
-def _head(title: str) -> str:
-    return f"<header><h1>{html.escape(title)}</h1></header>"
-
-
-def _banner(summary: dict[str, Any]) -> str:
-    """One green line, or a red box with the outcome and every reason in words."""
-    word = html.escape(summary["outcome"])
-    if summary["completed"]:
-        return f'<p class="banner good"><strong>Outcome: {word}</strong></p>'
-    reasons = "".join(f"<li>{html.escape(reason)}</li>" for reason in summary["reasons"])
-    return (
-        f'<section class="banner bad" role="alert"><strong>Outcome: {word}. This run is not'
-        f" completed.</strong><ul>{reasons}</ul></section>"
-    )
-
-
-def _notes(summary: dict[str, Any]) -> str:
-    notes = []
-    if summary["log_fault"]:
-        notes.append(f"The log is not complete: {summary['log_fault']}.")
-    if summary["rejected_messages"]:
-        named = ", ".join(f"{count} of {n}" for n, count in summary["rejected_messages"].items())
-        notes.append(f"Invalid messages are left out: {named}.")
-    if summary["lockstep_timeouts"]:
-        notes.append(f"The plant continued without a command {summary['lockstep_timeouts']} times.")
-    notes += [f"Incident: {text}." for text in summary["incidents"]]
-    notes += [f"Vehicle: {text}." for text in summary["vehicle_warnings"] or ()]
-    told = summary["incidents"]
-    notes += [
-        f"Note of the check: {text}." for text in summary["check"]["notes"] if text not in told
+def _body(run: ReportedRun, shown: Shown, pictures: Pictures) -> Sequence[str]:
+    facts, summary = Facts(run), run.summary
+    values = facts.values  # first, so that the reasons for what is missing are there
+    return [
+        '<section id="did-it-work"><h2>Did it work?</h2>',
+        sections.banner(summary),
+        *map(note, sections.notes(summary)),
+        sections.cards(facts),
+        sections.goals(summary),
+        _seen(pictures),
+        "</section>",
+        *(_question(run, question, facts, shown) for question in QUESTIONS),
+        '<section id="everything"><h2>Everything else</h2>',
+        folded("All figures", _all(values)),
+        folded("About the run", table(("what", "value"), _about(run))),
+        *(_attachment(name, run.log) for name in ("config.yaml", "vehicle.yaml")),
+        "</section>",
     ]
-    if summary["judged_by"] != "ground truth":
-        notes.append(f"The limits are judged by {summary['judged_by']}: the log has no truth.")
-    return "".join(f'<p class="note">{html.escape(note)}</p>' for note in notes)
 
 
-def _cards(summary: dict[str, Any]) -> str:
-    def of(name: str, part: str, scale: float = 1.0) -> float | None:
-        value = summary[name][part]
-        return None if value is None else scale * value
-
-    cards = (
-        ("end-effector error", of("end_effector_error_m", "rms", 1e3), "mm rms",
-         of("end_effector_error_m", "max", 1e3), "mm max"),
-        ("navigation error", of("navigation_error_m", "rms", 1e3), "mm rms",
-         of("navigation_error_m", "max", 1e3), "mm max"),
-        ("roll", of("roll_deg", "max"), "° max", of("roll_deg", "rms"), "° rms"),
-        ("pitch", of("pitch_deg", "max"), "° max", of("pitch_deg", "rms"), "° rms"),
-        ("least clearance", of("clearance_m", "min", 1e3), "mm",
-         (summary["clearance_m"] or {}).get("pair"), ""),
-        ("self-disturbance", of("self_disturbance", "moment_rms_nm"), "N m rms",
-         of("self_disturbance", "force_rms_n"), "N rms"),
-        ("planner step", of("planner_step_ms", "p50"), "ms median",
-         of("planner_step_ms", "p99"), "ms p99"),
-        ("simulated", summary["sim_duration_s"], "s", summary["real_time_factor"], "× real time"),
-    )  # fmt: skip
-    return '<section class="cards">' + "".join(_card(*card) for card in cards) + "</section>"
-
-
-def _card(name: str, first: float | None, unit: str, second: float | None, second_unit: str) -> str:
-    below = "" if second is None else f"{_number(second)} {second_unit}"
+def _question(run: ReportedRun, question: Question, facts: Facts, shown: Shown) -> str:
+    extra = ""
+    if question.key == "disturbed":
+        extra = sections.events(run.summary)
+    elif question.key == "healthy":
+        extra = sections.health(run.log, run.summary)
+    intro = f"<p>{escaped(question.intro)}</p>" if question.intro else ""
     return (
-        f'<div class="card"><h3>{name}</h3><p class="big">{_number(first)}'
-        f'<span> {unit}</span></p><p class="small">{below}</p></div>'
+        f'<section id="{question.key}"><h2>{escaped(question.title)}</h2>{intro}'
+        f"{sections.figures(question.metrics, facts)}{extra}"
+        f"{sections.plots(question.groups, shown)}</section>"
     )
 
 
-def _number(value: Any) -> str:
-    if value is None:
-        return "–"
-    if isinstance(value, bool) or not isinstance(value, (int, float)):
-        return html.escape(str(value))
-    return str(value) if isinstance(value, int) else f"{value:.4g}"
+def links() -> list[tuple[str, str]]:
+    """Anchors and titles of the questions and the rest."""
+    return [
+        *((question.key, question.title) for question in QUESTIONS),
+        ("everything", "Everything else"),
+    ]
 
 
-def _figure(picture: Picture) -> str:
-    caption = f"<figcaption>{html.escape(picture.caption)}</figcaption>"
-    if picture.file is None:
-        reason = html.escape(picture.reason)
-        return f'<figure>{caption}<p class="note">No figure: {reason}</p></figure>'
-    data = base64.b64encode(picture.file.read_bytes()).decode()
-    image = f'<img alt="{html.escape(picture.caption)}" src="data:image/png;base64,{data}">'
-    return f'<figure id="{picture.name}">{image}{caption}</figure>'
+def _seen(pictures: Pictures) -> str:
+    """The picture, and a button that opens the 3-D page in its place."""
+    parts = [f'<p class="lack">{escaped(reason)}</p>' for reason in pictures.reasons]
+    if pictures.picture is not None:
+        data = base64.b64encode(pictures.picture).decode()
+        parts.append(
+            f'<figure class="picture"><img src="data:image/png;base64,{data}" alt="The vehicle at'
+            ' work with the path of its tool, thrusts and disturbance"><figcaption>The vehicle at'
+            " work. Ghosts: other postures; tube: true path of the tool, enlarged in the corner;"
+            " arrows: thrusts and disturbance at the time of the solid posture.</figcaption>"
+            "</figure>"
+        )
+    if pictures.scene is not None:
+        parts.append(
+            '<div class="scene"><button type="button" id="open-scene">Show the run in 3-D'
+            "</button></div>"
+        )
+    return "".join(parts)
 
 
-def _table(values: dict[str, Any]) -> str:
-    rows = (
-        f"<tr><th>{html.escape(key)}</th><td>{_number(value)}</td></tr>"
-        for key, value in values.items()
-    )
-    return f"<table>{''.join(rows)}</table>"
+def _all(values: Mapping[str, Any]) -> str:
+    return table(("figure", "value"), [(name, number(value)) for name, value in values.items()])
 
 
-def _details(name: str, log: RunLog) -> str:
+def _about(run: ReportedRun) -> list[tuple[str, str]]:
+    return [*((key, str(value)) for key, value in run.log.run.items()), ("log", run.log.path.name)]
+
+
+def _attachment(name: str, log: RunLog) -> str:
     if name not in log.attachments:
         return ""
     try:
-        text = html.escape(log.text(name))
+        text = log.text(name)
     except LogError as fault:
-        text = html.escape(str(fault))
-    return f"<details><summary>{name}</summary><pre>{text}</pre></details>"
+        text = str(fault)
+    return folded(name, f"<pre>{escaped(text)}</pre>")
+
+
+def embedded(data: Mapping[str, Any], scene: str | None = None) -> str:
+    """The data of the plots and the 3-D page as text that the page's script reads."""
+    found = f'<script type="application/json" id="data">{as_script(data)}</script>'
+    if scene is not None:
+        found += f'<script type="application/json" id="scene">{as_script(scene)}</script>'
+    return found
+
+
+def as_script(values: Any) -> str:
+    """JSON that cannot end the element that it stands in."""
+    return json.dumps(values, separators=(",", ":"), allow_nan=False).replace("<", "\\u003c")
+
+
+def document(title: str, body: str, anchors: Sequence[tuple[str, str]]) -> str:
+    """The whole page around a body, with its style, its scripts and links to its sections."""
+    style = CSS.read_text(encoding="utf-8") + PLOT_CSS.read_text(encoding="utf-8")
+    scripts = "".join(f"<script>{file.read_text(encoding='utf-8')}</script>\n" for file in SCRIPTS)
+    menu = "".join(f'<a href="#{key}">{escaped(text)}</a>' for key, text in anchors)
+    return (
+        '<!doctype html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        f'<link rel="icon" href="data:,">\n<title>{escaped(title)}</title>\n'
+        f"<style>\n{style}</style>\n</head>\n"
+        f'<body class="report">\n<a class="skip" href="#content">Skip to the report</a>\n'
+        f"<header><h1>{escaped(title)}</h1></header>\n"
+        f'<nav aria-label="Questions">{menu}</nav>\n{CONTROLS}\n'
+        f'<main id="content" tabindex="-1">\n<noscript>{note("The plots need JavaScript.")}'
+        f'</noscript>\n<p class="caption help">{escaped(HELP)}</p>\n{body}\n</main>\n'
+        f"{scripts}</body>\n</html>\n"
+    )
+
+
+def write(path: Path, text: str) -> Path:
+    """Write a page.
+
+    Raises:
+        LogError: it cannot be written.
+    """
+    try:
+        path.write_text(text, encoding="utf-8", errors="replace")
+    except OSError as fault:
+        raise LogError(f"{path}: cannot be written: {fault.strerror}") from fault
+    return path
