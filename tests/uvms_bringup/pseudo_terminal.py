@@ -78,7 +78,12 @@ class Terminal:
             start_new_session=True,
         )
         os.close(slave)
-        self.raw = ""
+        self._data = b""
+
+    @property
+    def raw(self) -> str:
+        """Everything that was written so far."""
+        return self._data.decode(errors="ignore")
 
     def __enter__(self) -> "Terminal":
         return self
@@ -93,7 +98,9 @@ class Terminal:
         """Read until the words were shown; AssertionError where they do not come."""
         until = time.monotonic() + patience_s
         while words not in self.raw:
-            assert self._read() and time.monotonic() < until, f"no {words!r} in:\n{self.raw}"
+            is_going_on = self._read()
+            assert words in self.raw or is_going_on, f"no {words!r} in:\n{self.raw}"
+            assert time.monotonic() < until, f"no {words!r} in:\n{self.raw}"
 
     def press_ctrl_c(self) -> None:
         self._process.send_signal(signal.SIGINT)
@@ -118,8 +125,7 @@ class Terminal:
             data = os.read(self._master, 65536)
         except OSError:  # the other end is closed
             return False
-        self._data = getattr(self, "_data", b"") + data
-        self.raw = self._data.decode(errors="ignore")
+        self._data += data
         return bool(data)
 
 

@@ -230,7 +230,7 @@ class Conductor(Node):
         )
         self._faults.clear()
         request = self._goals.request(goal)
-        handle = self._answer_to(spinner, request, f"motion_planner: {name}")
+        handle = self._answer_to(spinner, request, f"motion_planner: {name}", "a plan, ")
         reason = "" if handle.accepted else self._reason(spinner)
         if (why := refusal(handle, request, reason)) is not None:
             raise RunError(f"the planner rejected the goal: {why}")
@@ -252,12 +252,12 @@ class Conductor(Node):
         if not answer.success:
             raise RunError(f"{name}: {answer.message}")
 
-    def _answer_to(self, spinner: Spinner, request: Request, name: str) -> Any:
+    def _answer_to(self, spinner: Spinner, request: Request, name: str, what: str = "") -> Any:
         self._await(
             spinner,
             lambda: request.answer() is not None,
             ANSWER_PATIENCE_S,
-            lambda: f"an answer from {name}",
+            lambda: f"{what}an answer from {name}",
         )
         return request.answer()
 

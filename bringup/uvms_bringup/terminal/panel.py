@@ -51,10 +51,9 @@ def panel(glance: Glance, title: str, columns: int, is_ascii: bool = False) -> R
     else:
         body.add_row(state)
         body.add_row(thrusters)
-    events = _grid(_event_rows(glance), inside)
     whole = Table.grid()
     whole.add_row(body)
-    whole.add_row(events)
+    whole.add_row(_grid(_text_rows(glance), inside))
     frame = box.ASCII if is_ascii else box.ROUNDED
     return Panel(whole, title=Text(title), title_align="left", width=width, box=frame)
 
@@ -75,14 +74,12 @@ def _state_rows(glance: Glance, width: int, block: str) -> Iterator[Row]:
     room = width - LABEL - 1 - len(done)
     yield "done", _filled(glance.share, room, block).append(done)
     yield "pace", Text(f"{words.pace_text(glance)}, {words.left_text(glance)}")
-    yield "phase", Text(_one_line(glance.phase) or words.NOTHING)
     yield "tool off", _bounded(own.tool)
     yield "roll", _bounded(own.roll)
     yield "pitch", _bounded(own.pitch)
     yield "restoring", Text(words.push_text(own.restoring))
     yield "coupling", Text(words.push_text(own.coupling))
     yield "external", Text(words.push_text(own.external))
-    yield "health", _health(own.health)
 
 
 def _thruster_rows(glance: Glance, width: int, block: str) -> Iterator[Row]:
@@ -96,7 +93,10 @@ def _thruster_rows(glance: Glance, width: int, block: str) -> Iterator[Row]:
         yield name, Text.assemble((text, style), " ", bar)
 
 
-def _event_rows(glance: Glance) -> Iterator[Row]:
+def _text_rows(glance: Glance) -> Iterator[Row]:
+    """What may be long."""
+    yield "phase", Text(_one_line(glance.phase) or words.NOTHING)
+    yield "health", _health(glance.measured.health)
     events = glance.measured.events
     if not events:
         yield "events", Text(words.NOTHING, style=DIM)
