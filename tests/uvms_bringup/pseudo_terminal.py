@@ -94,13 +94,14 @@ class Terminal:
         self._process.wait()
         os.close(self._master)
 
-    def read_until(self, words: str, patience_s: float) -> None:
-        """Read until the words were shown; AssertionError where they do not come."""
-        until = time.monotonic() + patience_s
-        while words not in self.raw:
+    def read_until(self, pattern: str, patience_s: float) -> None:
+        """Read until a pattern, over lines, was shown; AssertionError if it does not come."""
+        until, wanted = time.monotonic() + patience_s, re.compile(pattern, re.DOTALL)
+        while not wanted.search(self.raw):
             is_going_on = self._read()
-            assert words in self.raw or is_going_on, f"no {words!r} in:\n{self.raw}"
-            assert time.monotonic() < until, f"no {words!r} in:\n{self.raw}"
+            missing = f"no {pattern!r} in:\n{self.raw}"
+            assert wanted.search(self.raw) or is_going_on, missing
+            assert time.monotonic() < until, missing
 
     def press_ctrl_c(self) -> None:
         self._process.send_signal(signal.SIGINT)
