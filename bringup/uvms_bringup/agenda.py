@@ -95,15 +95,13 @@ class Agenda:
         """What the goals are at, for who watches the run."""
         if not self._goals:
             return "no goal"
-        ended = [record for record in self._records if record.ended_s is not None]
-        if self.due is None and not self.active:
-            last = ended[-1]
-            return (
-                "all goals succeeded"
-                if self.state == "succeeded"
-                else (f"{self._named(len(ended) - 1)} {last.state}: {last.message}")
-            )
-        return f"{self._named(self._index)} {'active' if self.active else 'being planned'}"
+        if self.active or self.due is not None:
+            return f"{self._named(self._index)} {'active' if self.active else 'being planned'}"
+        if self.state == "succeeded":
+            return "all goals succeeded"
+        last = sum(record.ended_s is not None for record in self._records) - 1
+        state, message = self._records[last].state, self._records[last].message
+        return f"{self._named(last)} {state}" + (f": {message}" if message else "")
 
     def _named(self, index: int) -> str:
         return f"goal {index + 1} of {len(self._goals)} ({self._records[index].kind})"

@@ -59,3 +59,26 @@ def test_the_end_of_a_run_keeps_them_and_older_logs_have_none():
     assert RunEnd.from_metadata(record).goals == agenda.records()
     del record["goals"]
     assert RunEnd.from_metadata(record).goals == ()
+
+
+def test_the_phase_says_what_the_goals_are_at():
+    agenda = Agenda((POSE, JOINTS))
+    assert agenda.phase == "goal 1 of 2 (pose) being planned"
+    agenda.begin(0)
+    assert agenda.phase == "goal 1 of 2 (pose) active"
+    agenda.end(SECOND, "succeeded")
+    assert agenda.phase == "goal 2 of 2 (joints) being planned"
+    agenda.begin(SECOND)
+    agenda.end(2 * SECOND, "succeeded")
+    assert agenda.phase == "all goals succeeded"
+
+
+def test_the_phase_says_what_has_failed_and_why():
+    agenda = Agenda((POSE, JOINTS))
+    agenda.begin(0)
+    agenda.end(SECOND, "canceled")
+    assert agenda.phase == "goal 1 of 2 (pose) canceled"
+    refused = Agenda(PATH)
+    refused.refuse(0, "out of reach")
+    assert refused.phase == "goal 1 of 1 (path) rejected: out of reach"
+    assert Agenda(None).phase == "no goal"
