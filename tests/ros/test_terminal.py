@@ -7,7 +7,7 @@ from graph import finished, own_domain, uvms
 from pseudo_terminal import Terminal
 
 RUN = ("run", "--composed")
-WHOLE = "x real time.*╯"
+WHOLE = ("x real time", "╯")
 ESCAPE, FRAME = "\x1b", "│"
 LINE = re.compile(
     r"^ *\d+\.\d of \d+ s  .*  tool .* mm  roll .* deg  pitch .* deg .*health ok$", re.M
@@ -28,7 +28,7 @@ def check_clean(screen):
 
 def test_a_run_shows_its_panel_and_leaves_its_summary(tmp_path):
     with terminal(tmp_path / "a", RUN, "20") as shown:
-        shown.read_until(WHOLE, 200.0)
+        shown.read_until(*WHOLE, patience_s=200.0)
         panel = shown.screen().text
         assert shown.end(100.0) == 0, shown.raw
     for words in (
@@ -48,7 +48,7 @@ def test_a_run_shows_its_panel_and_leaves_its_summary(tmp_path):
 
 def test_ctrl_c_takes_the_panel_away(tmp_path):
     with terminal(tmp_path / "a", RUN, "6000") as shown:
-        shown.read_until(WHOLE, 200.0)
+        shown.read_until(*WHOLE, patience_s=200.0)
         shown.press_ctrl_c()
         assert shown.end(60.0) == 130, shown.raw
     check_clean(shown.screen())

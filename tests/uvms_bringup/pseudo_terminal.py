@@ -94,13 +94,13 @@ class Terminal:
         self._process.wait()
         os.close(self._master)
 
-    def read_until(self, pattern: str, patience_s: float) -> None:
-        """Read until a pattern, over lines, was shown; AssertionError if it does not come."""
-        until, wanted = time.monotonic() + patience_s, re.compile(pattern, re.DOTALL)
-        while not wanted.search(self.raw):
+    def read_until(self, *words: str, patience_s: float) -> None:
+        """Read until the words were shown in this order; AssertionError if they do not come."""
+        until = time.monotonic() + patience_s
+        while not _in_order(self.raw, words):
             is_going_on = self._read()
-            missing = f"no {pattern!r} in:\n{self.raw}"
-            assert wanted.search(self.raw) or is_going_on, missing
+            missing = f"no {' ... '.join(words)} in:\n{self.raw}"
+            assert is_going_on or _in_order(self.raw, words), missing
             assert time.monotonic() < until, missing
 
     def press_ctrl_c(self) -> None:
@@ -128,6 +128,14 @@ class Terminal:
             return False
         self._data += data
         return bool(data)
+
+
+def _in_order(text: str, words: Sequence[str]) -> bool:
+    place = 0
+    for each in words:
+        if (place := text.find(each, place)) < 0:
+            return False
+    return True
 
 
 def _environment(own: Mapping[str, str]) -> dict[str, str]:
