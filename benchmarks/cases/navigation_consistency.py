@@ -7,7 +7,7 @@ from metrics import Metric, Target
 from navigation_runs import VEHICLES, End, runs
 
 from uvms_observer import NavigationConfig
-from uvms_observer.navigation.innovation_gate import quantile
+from uvms_observer.navigation.trust.innovation_gate import quantile
 
 SECONDS = 30.0
 DRIFT = {"reference_auv": 0.0005, "bluerov2_alpha5": 0.003}

@@ -90,6 +90,24 @@ class Agenda:
             return failed[0]
         return "succeeded" if set(states) == {"succeeded"} else "running"
 
+    @property
+    def phase(self) -> str:
+        """What the goals are at, for who watches the run."""
+        if not self._goals:
+            return "no goal"
+        ended = [record for record in self._records if record.ended_s is not None]
+        if self.due is None and not self.active:
+            last = ended[-1]
+            return (
+                "all goals succeeded"
+                if self.state == "succeeded"
+                else (f"{self._named(len(ended) - 1)} {last.state}: {last.message}")
+            )
+        return f"{self._named(self._index)} {'active' if self.active else 'being planned'}"
+
+    def _named(self, index: int) -> str:
+        return f"goal {index + 1} of {len(self._goals)} ({self._records[index].kind})"
+
     def records(self) -> tuple[dict[str, Any], ...]:
         """As plain data."""
         return tuple(asdict(record) for record in self._records)

@@ -13,6 +13,24 @@ REFRESH_S = 0.2
 LINE_S = 5.0
 
 
+class PaceMeter:
+    """Simulated time over wall time, from the first stamp after 0 on."""
+
+    def __init__(self) -> None:
+        self._began: tuple[float, int] | None = None
+
+    def at(self, stamp: int) -> float | None:
+        """The pace up to this stamp in ns; None at the start."""
+        if self._began is None:
+            if stamp > 0:
+                self._began = time.monotonic(), stamp
+            return None
+        began, first = self._began
+        if stamp <= first:
+            return None
+        return to_seconds(stamp - first) / max(time.monotonic() - began, 1e-9)
+
+
 class ProgressLine:
     """A bar on a terminal, a line every few seconds elsewhere; nothing where it is quiet."""
 
@@ -20,7 +38,7 @@ class ProgressLine:
         self._end = end
         self._quiet = quiet
         self._shown = 0.0
-        self._began: tuple[float, int] | None = None
+        self._pace = PaceMeter()
         self._bar = _bar() if sys.stderr.isatty() and not quiet else None
         if self._bar is not None:
             self._bar.start()
@@ -31,31 +49,23 @@ class ProgressLine:
         if self._quiet:
             return
         now = time.monotonic()
-        if self._began is None and stamp > 0:
-            self._began = now, stamp
+        pace = self._pace.at(stamp)
         if now - self._shown < (REFRESH_S if self._bar is not None else LINE_S):
             return
         self._shown = now
-        self._print(stamp, note)
+        self._print(stamp, "" if pace is None else f"{pace:5.1f}x real time", note)
 
     def end(self) -> None:
         """Stop the bar, leaving its last state on the screen."""
         if self._bar is not None:
             self._bar.stop()
 
-    def _print(self, stamp: int, note: str) -> None:
-        speed = self._speed(stamp)
+    def _print(self, stamp: int, speed: str, note: str) -> None:
         if self._bar is not None:
             self._bar.update(self._task, completed=to_seconds(stamp), speed=speed, note=note)
         elif stamp > 0:
             done = f"{to_seconds(stamp):7.1f} of {to_seconds(self._end):.0f} s"
             print(f"{done}  {speed}  {note}".rstrip(), file=sys.stderr, flush=True)
-
-    def _speed(self, stamp: int) -> str:
-        if self._began is None or stamp <= self._began[1]:
-            return ""
-        elapsed = time.monotonic() - self._began[0]
-        return f"{to_seconds(stamp - self._began[1]) / max(elapsed, 1e-9):5.1f}x real time"
 
 
 def _bar() -> "Progress":

@@ -25,11 +25,13 @@ from uvms_bringup.ending import Ending
 from uvms_bringup.errors import RunError
 from uvms_bringup.folder import claim_folder, new_folder
 from uvms_bringup.pace import Pace
-from uvms_bringup.progress import ProgressLine
 from uvms_bringup.run_id import new_run_id
 from uvms_bringup.scenario import Scenario
 from uvms_bringup.simulate import simulate
 from uvms_bringup.stopped import SignalWatch, Stopped
+from uvms_bringup.terminal.heard_log import HeardLog
+from uvms_bringup.terminal.listener import Listener
+from uvms_bringup.terminal.screen import Screen
 from uvms_core.errors import UvmsError
 from uvms_core.signals import to_nanoseconds
 from uvms_core.vehicle import Vehicle, dump_vehicle
@@ -41,7 +43,7 @@ VEHICLE_FILE = "vehicle.yaml"
 BAG_FILE = "metadata.yaml"
 SUMMARY_FILE = "summary.json"
 Progress = Callable[[int, str], None]
-Run = Callable[[LogWriter, Ending, Progress], None]
+Run = Callable[[LogWriter, Ending, Progress, Screen], None]
 
 
 class Stopwatch:
@@ -92,7 +94,7 @@ class Session:
     def run_simulation(self) -> dict[str, Any]:
         """`uvms simulate`: returns the summary; as `run_graph`."""
 
-        def run(log: LogWriter, ending: Ending, progress: Progress) -> None:
+        def run(log: LogWriter, ending: Ending, progress: Progress, screen: Screen) -> None:
             names = self.vehicle.joint_names, self.vehicle.thruster_names
             writer = SignalWriter(log, *names, self.cast.namespace)
             simulate_goal(self.scenario, self.vehicle, self.goal, writer, ending, progress)
@@ -109,7 +111,7 @@ class Session:
         """
         from uvms_bringup.ros.run import GraphRun  # only this needs ROS
 
-        def run(log: LogWriter, ending: Ending, progress: Progress) -> None:
+        def run(log: LogWriter, ending: Ending, progress: Progress, screen: Screen) -> None:
             GraphRun(
                 self.scenario,
                 self.vehicle,
@@ -122,6 +124,7 @@ class Session:
                 self.holder,
                 log.write,
                 progress,
+                screen.wait,
                 ending,
             ).run()
 
@@ -131,30 +134,40 @@ class Session:
         config = effective_config(self.scenario)
         (self.folder / "config.yaml").write_text(config, encoding="utf-8")
         vehicle_file(self.folder, self.vehicle)
-        line = ProgressLine(to_nanoseconds(self.scenario.duration_s), self.quiet)
         clock, ending, fault = Stopwatch(), Ending(), None
+        screen, open_log = self._watched()
         try:
-            with SignalWatch() as signals, LogWriter(self.folder / "run.mcap") as log:
+            with SignalWatch() as signals, open_log() as log:
 
                 def progress(stamp: int, note: str) -> None:
                     clock.start()
                     signals.begin()
                     signals.check()
-                    line.show(stamp, note)
+                    screen.show(stamp, note)
 
                 try:
                     self._describe(log, config)
-                    run(log, ending, progress)
+                    with screen:
+                        run(log, ending, progress, screen)
                 except UvmsError as reason:
                     fault = reason
                     self.ended_by.append(reason)
                 finally:
-                    line.end()
                     clock.stop()
                 self._end(log, ending, fault)
             return self._conclude(log.path, clock, fault)
         finally:
             self.claim.release()
+
+    def _watched(self) -> tuple[Screen, Callable[[], LogWriter]]:
+        """What is shown of the run, and how its log is opened so that this hears of it."""
+        file, end = self.folder / "run.mcap", to_nanoseconds(self.scenario.duration_s)
+        if self.quiet:
+            return Screen("", end, None), lambda: LogWriter(file)
+        limits = self.scenario.planner.limits
+        listener = Listener(self.vehicle, limits, self.cast.namespace)
+        title = f"{self.scenario.scenario} {self.holder.run_id}"
+        return Screen(title, end, listener), lambda: HeardLog(file, listener.hear)
 
     def _end(self, log: LogWriter, ending: Ending, fault: Exception | None) -> None:
         """The last record; LogError where the log cannot be written any more."""

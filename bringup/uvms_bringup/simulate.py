@@ -31,7 +31,7 @@ def simulate(
         goal: what the planner is asked for, once the loop is closed at the first tick: one goal,
             or several, of which each begins when the one before it has succeeded.
         log: receives every signal; None: no log.
-        progress: called with the stamp in ns and a line of text, at each tick.
+        progress: called with the stamp in ns and what the run is at, at each tick.
         observe: called with every tick.
 
     Raises:
@@ -51,11 +51,11 @@ def simulate(
             if log is not None:
                 write_tick(log, tick, frames)
             observe(tick)
-            progress(tick.stamp, "" if tick.odometry is not None else _waiting(loop))
             if tick.plan is not None and tick.plan.finished is not None and agenda.active:
                 finished = tick.plan.finished
                 state = "succeeded" if finished.success else "aborted"
                 agenda.end(tick.stamp, state, finished.message)
+            progress(tick.stamp, _waiting(loop) if tick.odometry is None else agenda.phase)
             if tick.stamp >= end:
                 return agenda.state in ("none", "running", "succeeded")
             if agenda.due is not None and tick.plan is not None:
@@ -70,7 +70,7 @@ def simulate(
 def _waiting(loop: Loop) -> str:
     """What navigation waits for, for who watches the run."""
     trouble = loop.parts[topics.NAVIGATION].trouble()
-    return "" if trouble is None else f"navigation: {trouble[1]}"
+    return "waiting for navigation" + ("" if trouble is None else f": {trouble[1]}")
 
 
 def _begin(agenda: Agenda, goal: Goal, loop: Loop, stamp: int) -> None:

@@ -11,7 +11,7 @@ from uvms_core.cdr import codec, stamp_in
 from uvms_core.messages import from_message
 from uvms_core.signals import JointGoal
 from uvms_core.vehicle import load_vehicle
-from uvms_observer.navigation.resume import carried, lost
+from uvms_observer.navigation.begin.resume import carried, lost
 
 LOOP = [role for role in NODES if role != topics.PLANT]
 SENSORS = [f"sensors/{name}" for name in ("imu", "dvl", "pressure", "gps")]

@@ -12,7 +12,7 @@ from sensor_truth import Motion, Rig, Waves
 from uvms_core.signals import to_seconds
 from uvms_core.vehicle import load_vehicle
 from uvms_observer import NavigationConfig, NavigationFilter
-from uvms_observer.navigation.sensor_health import Health
+from uvms_observer.navigation.trust.sensor_health import Health
 
 VEHICLE = load_vehicle()
 TURNING = Waves((0.02, -0.03, 0.2), amplitude=(0.03, 0.02, 0.4), period_s=(9.0, 13.0, 50.0))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from nav_states import NOISE, random_state
 
-from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
+from uvms_observer.navigation.inertial.at_once import UNUSUAL, take_inertial
 from uvms_observer.navigation.measurements.imu import correct_attitude
 from uvms_observer.navigation.propagation import propagate
 

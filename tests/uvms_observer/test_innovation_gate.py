@@ -3,7 +3,13 @@
 import numpy as np
 import pytest
 
-from uvms_observer.navigation.innovation_gate import CHANCES, ROW, InnovationGate, Tally, quantile
+from uvms_observer.navigation.trust.innovation_gate import (
+    CHANCES,
+    ROW,
+    InnovationGate,
+    Tally,
+    quantile,
+)
 
 SECOND = 1_000_000_000
 PERIOD_S = 0.125

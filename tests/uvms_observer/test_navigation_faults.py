@@ -10,7 +10,7 @@ from sensor_truth import Rig
 from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_core.vehicle import load_vehicle
 from uvms_observer import NavigationConfig, NavigationFilter
-from uvms_observer.navigation.sensor_health import Health
+from uvms_observer.navigation.trust.sensor_health import Health
 
 
 @pytest.mark.parametrize("name", FAULTS)

@@ -7,8 +7,8 @@ from scipy.spatial.transform import Rotation
 from uvms_core.vehicle import load_vehicle
 from uvms_observer import NavigationConfig
 from uvms_observer.navigation.samples import Instruments
-from uvms_observer.navigation.sensor_health import Health, excused, trouble_of
 from uvms_observer.navigation.state import empty_state
+from uvms_observer.navigation.trust.sensor_health import Health, excused, trouble_of
 
 PLACE = {"rate_hz": 5.0, "position_m": [0.0, 0.0, 0.1]}
 ADDED = {

@@ -12,7 +12,7 @@ from uvms_core.plausibility import Plausibility
 from uvms_core.signals import Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_observer import NavigationConfig
-from uvms_observer.navigation.resume import OLDEST_S
+from uvms_observer.navigation.begin.resume import OLDEST_S
 from uvms_observer.parts import NavigationPart
 
 HOLE = to_nanoseconds(OLDEST_S)

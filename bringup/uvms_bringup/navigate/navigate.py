@@ -27,7 +27,7 @@ from uvms_core.vehicle.loader import vehicle_from_data
 from uvms_dynamics.simulation import PlantConfig
 from uvms_observer import NavigationConfig, NavigationFilter
 from uvms_observer.arrivals import used_sensors
-from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_SPEED_M_S, lost
+from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_SPEED_M_S, lost
 
 ABSOLUTE = ("gps", "position_fix")
 """Kinds of sensors that say where the vehicle is."""

@@ -27,7 +27,7 @@ from uvms_core.ros.request import Request
 from uvms_core.ros.roll_call import NO_ANSWER, NOT_UP, RollCall
 from uvms_core.ros.spin import Spinner
 from uvms_core.ros.subscribe import qos_profile
-from uvms_core.signals import Goal, to_seconds
+from uvms_core.signals import Goal
 from uvms_core.topic import NodeTopics, Topic
 from uvms_core.vehicle import Vehicle
 
@@ -69,6 +69,7 @@ class Conductor(Node):
         graph: what each node reads and writes, `topics.nodes(vehicle)`.
         foreign: roles that are filled by nodes which do not answer to the roll call.
         absent: of these, the ones that a person starts: they are waited for without end.
+        waiting: called while waiting, with what says for what.
     """
 
     def __init__(
@@ -80,6 +81,7 @@ class Conductor(Node):
         graph: Mapping[str, NodeTopics] = topics.NODES,
         foreign: Collection[str] = (),
         absent: Collection[str] = (),
+        waiting: Callable[[Callable[[], str]], None] = lambda lack: None,
         **options: Any,
     ) -> None:
         super().__init__(CONDUCTOR, **options)
@@ -87,7 +89,7 @@ class Conductor(Node):
         self.graph_watch = GraphWatch(self, graph, absent)
         self._goals = GoalSender(self, joint_names, self._take_feedback)
         self.recorder = Recorder(self, write, recorded)
-        self._watch = watch
+        self._watch, self._waiting = watch, waiting
         self._end: tuple[Topic, ...] = LOOP_END
         self._faults: dict[str, str] = {}
         self._asked = {diagnostics.GOALS_ACCEPTED: 0, diagnostics.PAUSES: 0}
@@ -228,7 +230,7 @@ class Conductor(Node):
         )
         self._faults.clear()
         request = self._goals.request(goal)
-        handle = self._answer_to(spinner, request, f"motion_planner: {name}")
+        handle = self._answer_to(spinner, request, f"motion_planner: {name}", "a plan, ")
         reason = "" if handle.accepted else self._reason(spinner)
         if (why := refusal(handle, request, reason)) is not None:
             raise RunError(f"the planner rejected the goal: {why}")
@@ -250,12 +252,12 @@ class Conductor(Node):
         if not answer.success:
             raise RunError(f"{name}: {answer.message}")
 
-    def _answer_to(self, spinner: Spinner, request: Request, name: str) -> Any:
+    def _answer_to(self, spinner: Spinner, request: Request, name: str, what: str = "") -> Any:
         self._await(
             spinner,
             lambda: request.answer() is not None,
             ANSWER_PATIENCE_S,
-            lambda: f"an answer from {name}",
+            lambda: f"{what}an answer from {name}",
         )
         return request.answer()
 
@@ -266,6 +268,7 @@ class Conductor(Node):
         deadline, notice = began + patience, began + NOTICE_S
         while not ready():
             self._watch()
+            self._waiting(lack)
             if time.monotonic() > notice:
                 notice += NOTICE_S
                 waited = time.monotonic() - began
@@ -374,16 +377,13 @@ class Conductor(Node):
     def _take_result(self, answer: Any) -> None:
         self.result, self.result_status = answer.result().result, answer.result().status
 
-    def progress(self) -> str:
-        """One line on the progress of the run."""
-        text = f"t = {to_seconds(self.stamp):6.1f} s"
+    def phase(self) -> str:
+        """What the run is at, for who watches it."""
         if topics.ODOMETRY.name not in self.recorder.newest:
-            text += f"  navigation: {self._navigation}"
-        elif self.feedback is not None and hasattr(self.feedback, "tracking_error"):
-            text += f"  end effector {1e3 * self.feedback.tracking_error:5.1f} mm off its path"
-        elif self.feedback is not None and hasattr(self.feedback, "distance"):
-            text += f"  {self.feedback.distance:.2f} m to go"
-        return text
+            return f"waiting for navigation: {self._navigation}"
+        if self.agenda.active and hasattr(self.feedback, "distance"):
+            return f"{self.agenda.phase}: {self.feedback.distance:.2f} m to go"
+        return self.agenda.phase
 
 
 def _missing(lacks: dict[str, str], foreign: Collection[str] = ()) -> str:

@@ -54,7 +54,8 @@ class GraphRun:
         folder: of this run, with `vehicle.yaml` in it; the nodes' parameters and logs go there.
         holder: who runs it, for others who want its domain.
         write: takes every message, as `Recorder` says.
-        progress: called with the simulation stamp in ns and a line of text.
+        progress: called with the simulation stamp in ns and what the run is at.
+        waiting: called while no time passes, with what says what is missing.
         ending: is filled with what happened, whatever ends the run.
     """
 
@@ -69,6 +70,7 @@ class GraphRun:
     holder: Holder
     write: Write
     progress: Progress
+    waiting: Callable[[Callable[[], str]], None] = lambda lack: None
     ending: Ending = field(default_factory=Ending)
 
     def run(self) -> None:
@@ -120,6 +122,7 @@ class GraphRun:
             topics.nodes(self.vehicle),
             foreign,
             self.cast.absent,
+            self.waiting,
             namespace=self.cast.namespace or None,
         )
         return conductor
@@ -167,7 +170,7 @@ class GraphRun:
             self._watch(nodes, conductor)
             plant_watch.check()
             conductor.go_on()
-            self.progress(conductor.stamp, conductor.progress())
+            self.progress(conductor.stamp, conductor.phase())
             return conductor.arrived(end)
 
         spinner.spin(until=look)

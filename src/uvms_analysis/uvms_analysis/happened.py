@@ -5,6 +5,7 @@ from typing import Any
 
 from uvms_analysis.log.read import RunLog
 from uvms_core import topics
+from uvms_core.diagnostics import Status
 
 EVENT, AT = "event_", "event_at_s"
 """What the names of the values begin with, a number follows; and when it was, s."""
@@ -14,9 +15,14 @@ def events_of(log: RunLog) -> Iterator[dict[str, Any]]:
     """Time and text of each event that began or ended, in order; raises LogError."""
     statuses = log.statuses(topics.PLANT) if log.has(topics.DIAGNOSTICS) else []
     for status in statuses:
-        for name, text in status.values.items():
-            if name.startswith(EVENT) and name != AT:
-                yield {"at_s": status.number(AT), "text": str(text)}
+        yield from events_in(status)
+
+
+def events_in(status: Status) -> Iterator[dict[str, Any]]:
+    """Time and text of each event that one status of the plant tells of, in order."""
+    for name, text in status.values.items():
+        if name.startswith(EVENT) and name != AT:
+            yield {"at_s": status.number(AT), "text": str(text)}
 
 
 def not_reached(log: RunLog, end_s: float) -> list[dict[str, Any]]:

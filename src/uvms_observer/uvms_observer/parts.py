@@ -18,8 +18,8 @@ from uvms_observer.arrivals import sensor_inputs, used_sensors
 from uvms_observer.disturbance import ObserverConfig
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig
-from uvms_observer.navigation.resume import carried, doubted, fits, is_in_the_middle, lost
-from uvms_observer.navigation.sensor_health import Health
+from uvms_observer.navigation.begin.resume import carried, doubted, fits, is_in_the_middle, lost
+from uvms_observer.navigation.trust.sensor_health import Health
 from uvms_observer.truth import TruthPart
 
 CERTAIN = 10.0

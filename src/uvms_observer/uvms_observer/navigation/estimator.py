@@ -9,9 +9,11 @@ import numpy as np
 
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
-from uvms_observer.navigation import consistency, undecided
-from uvms_observer.navigation.alignment import aligned, levelled
-from uvms_observer.navigation.imu_screen import (
+from uvms_observer.navigation.begin.alignment import aligned, levelled
+from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
+from uvms_observer.navigation.inertial.at_once import UNUSUAL, take_inertial
+from uvms_observer.navigation.inertial.installation import Installation
+from uvms_observer.navigation.inertial.screen import (
     ImuScreen,
     Jump,
     ScreenMemory,
@@ -19,15 +21,17 @@ from uvms_observer.navigation.imu_screen import (
     remember,
     still,
 )
-from uvms_observer.navigation.inertial import UNUSUAL, take_inertial
-from uvms_observer.navigation.innovation_gate import InnovationGate, Tally
-from uvms_observer.navigation.installation import Installation
+from uvms_observer.navigation.inertial.unknown_motion import (
+    GAP,
+    change_velocity,
+    gap_spread,
+    spread,
+)
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.imu import Gyrocompass
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
 from uvms_observer.navigation.propagation import propagate
-from uvms_observer.navigation.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
 from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import (
     INERTIAL_BIASES,
@@ -36,8 +40,9 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.undecided import Doubt
-from uvms_observer.navigation.unknown_motion import GAP, change_velocity, gap_spread, spread
+from uvms_observer.navigation.trust import consistency, undecided
+from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
+from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
 MOST = np.repeat([np.radians(1.0), 0.1], 3)

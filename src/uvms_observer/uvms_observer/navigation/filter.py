@@ -22,22 +22,22 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_observer.errors import NotAlignedError
-from uvms_observer.navigation import consistency, suspicion
+from uvms_observer.navigation.begin.initialisation import lacking
+from uvms_observer.navigation.begin.levelling import check_gravity
 from uvms_observer.navigation.estimator import Estimator
-from uvms_observer.navigation.initialisation import lacking
-from uvms_observer.navigation.installation import installation
-from uvms_observer.navigation.levelling import check_gravity
+from uvms_observer.navigation.inertial.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
-from uvms_observer.navigation.sensor_health import (
+from uvms_observer.navigation.state import NavigationState
+from uvms_observer.navigation.time_line import Step, replayed, with_late
+from uvms_observer.navigation.trust import consistency, suspicion
+from uvms_observer.navigation.trust.sensor_health import (
     Health,
     excused,
     health_of,
     joined,
     trouble_of,
 )
-from uvms_observer.navigation.state import NavigationState
-from uvms_observer.navigation.time_line import Step, replayed, with_late
 
 
 class NavigationFilter:

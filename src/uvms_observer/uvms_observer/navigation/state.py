@@ -12,7 +12,7 @@ the body origin follows from the mounting position.
 The biases are sensor errors that do not average out. Most of them cannot be distinguished from the
 motion (a heading bias from a drift, for example); as states they are part of the covariance.
 
-A further state is one more line below, and its starting variance (`alignment.py`, or
+A further state is one more line below, and its starting variance (`begin/alignment.py`, or
 `Measurement.initial_variance`); it is constant unless `propagation.py` says otherwise. Kernels take
 places from here by name. SIZE is compiled into them.
 """

@@ -25,7 +25,7 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
 from uvms_observer.navigation.correction import correct
-from uvms_observer.navigation.installation import rate_variance
+from uvms_observer.navigation.inertial.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig

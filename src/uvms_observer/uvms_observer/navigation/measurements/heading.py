@@ -9,7 +9,7 @@ from uvms_core.rotations import quat_to_rpy
 from uvms_core.sensors.heading import Heading, HeadingSample
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
-from uvms_observer.navigation.heading_reference import carries_the_heading
+from uvms_observer.navigation.begin.heading_reference import carries_the_heading
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.course import HEADING_BIAS, correct_heading
 from uvms_observer.navigation.measurements.noise import as_white

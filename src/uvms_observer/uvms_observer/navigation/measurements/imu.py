@@ -22,12 +22,12 @@ from uvms_dynamics.kernels.rotations import (
 )
 from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.correction import correct
-from uvms_observer.navigation.installation import attitude_variance
+from uvms_observer.navigation.inertial.installation import attitude_variance
+from uvms_observer.navigation.inertial.unknown_motion import ACCELERATION_M_S2
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.noise import with_stated
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import SIZE, Fields, NavigationState
-from uvms_observer.navigation.unknown_motion import ACCELERATION_M_S2
 
 EVERY = to_nanoseconds(0.1)
 """Between two uses of gravity, ns."""

@@ -17,7 +17,7 @@ from uvms_core.rotations import quat_to_matrix, rpy_to_quat
 from uvms_core.sensors.mounting import mounting_of
 from uvms_core.signals import Array, ImuSample
 from uvms_core.vehicle.sensors import Imu
-from uvms_observer.navigation.unknown_motion import ACCELERATION_M_S2
+from uvms_observer.navigation.inertial.unknown_motion import ACCELERATION_M_S2
 
 WRONG_WAY_DEG = 45.0
 """Angle between the measured up and the true one beyond which it is no motion of a vehicle: that

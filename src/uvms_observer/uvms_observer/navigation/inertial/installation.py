@@ -6,7 +6,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle
-from uvms_observer.navigation.heading_reference import heading_bias
+from uvms_observer.navigation.begin.heading_reference import heading_bias
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import COMPASS_BIAS, CURRENT, INERTIAL_BIASES, SIZE

@@ -17,8 +17,8 @@ import numpy as np
 from scipy.special import gammaincinv
 
 from uvms_core.signals import Array
-from uvms_observer.navigation import consistency
 from uvms_observer.navigation.state import WIDEST
+from uvms_observer.navigation.trust import consistency
 
 ROW = 3
 """Samples in a row beyond the gate that exclude a sensor."""

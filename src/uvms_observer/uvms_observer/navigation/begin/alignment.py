@@ -7,8 +7,8 @@ import numpy as np
 
 from uvms_core.signals import Array, ImuSample, Odometry
 from uvms_dynamics.kernels.rotations import quat_to_matrix
-from uvms_observer.navigation.installation import Installation
-from uvms_observer.navigation.levelling import level, level_variance
+from uvms_observer.navigation.begin.levelling import level, level_variance
+from uvms_observer.navigation.inertial.installation import Installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     ATTITUDE,

@@ -4,9 +4,9 @@ from collections.abc import Mapping
 from enum import Enum
 
 from uvms_core.diagnostics import WARN, Trouble
-from uvms_observer.navigation.innovation_gate import Tally
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.state import NavigationState
+from uvms_observer.navigation.trust.innovation_gate import Tally
 
 SILENT_PERIODS = 10.0
 """Periods without a sample after which a sensor is lost."""

@@ -12,8 +12,8 @@ import numpy as np
 
 from uvms_core.signals import Array, to_nanoseconds, to_seconds
 from uvms_dynamics.kernels.rotations import quat_conjugate, quat_multiply, quat_to_rotation_vector
-from uvms_observer.navigation.innovation_gate import Tally
 from uvms_observer.navigation.state import NavigationState
+from uvms_observer.navigation.trust.innovation_gate import Tally
 
 DECIDED = to_nanoseconds(2.0)
 """Time by which a cause is found, or is the sensor itself."""

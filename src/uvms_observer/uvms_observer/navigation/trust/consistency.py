@@ -16,7 +16,7 @@ from uvms_core.signals import to_nanoseconds
 from uvms_observer.navigation.state import NavigationState
 
 if TYPE_CHECKING:
-    from uvms_observer.navigation.innovation_gate import Tally
+    from uvms_observer.navigation.trust.innovation_gate import Tally
 
 WINDOW_S = 10.0
 """Time constant of the running mean, s."""

@@ -19,8 +19,8 @@ from functools import partial
 
 from uvms_core.signals import to_nanoseconds
 from uvms_observer.navigation.estimator import Estimator
-from uvms_observer.navigation.innovation_gate import FEW, WINDOW_S, quantile
 from uvms_observer.navigation.time_line import Step, replayed
+from uvms_observer.navigation.trust.innovation_gate import FEW, WINDOW_S, quantile
 
 BEFORE = [to_nanoseconds(seconds) for seconds in (0.0, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0)]
 """When something happened: so long before the last sample that was used."""

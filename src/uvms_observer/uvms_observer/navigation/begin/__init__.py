@@ -1,0 +1,1 @@
+"""How the filter begins, and begins again: attitude, place, what is still missing."""
