@@ -14,7 +14,7 @@ unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
 
 .DEFAULT_GOAL := help
-.PHONY: help setup setup-run run test bench field faults docs pictures lint format clean
+.PHONY: help setup setup-run run test bench field faults docs figures pictures lint format clean
 
 help: ## show this list
 	@awk -F ':.*## ' '/^[a-z-]+:.*## / {printf "  make %-9s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -40,6 +40,9 @@ docs: setup ## set up, then build the documentation as a static site in site/ (o
 
 pictures: setup ## set up, then make the viewer's pictures and movie in docs/figures again
 	@$(BIN)/python tools/pictures
+
+figures: setup ## set up, then make the paper's figures and docs/paper-figures.md from runs of ours again
+	@$(BIN)/python -m uvms_bringup.paper_figures $(ARGS)
 
 lint: setup ## check style and types
 	@$(BIN)/ruff check $(CODE)

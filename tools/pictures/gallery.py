@@ -12,6 +12,7 @@ PUSH = (
     " moment_nm: [0.0, 0.0, 0.0], frame: world}}]"
 )
 TETHER = "vehicle_overrides={tether: {reference_depth_m: 9.0, weight_per_m_n: -2.0}}"
+DEAD = "events=[{at_s: 10.0, thruster: vertical_fore_port, effectiveness: 0.0}]"
 
 
 @dataclass(frozen=True)
@@ -39,6 +40,7 @@ GALLERY = (
     Shot("push", "hover", 12.0, 10.0, "chase", (PUSH, TETHER)),
     Shot("marker", "manipulation_marker", 8.0, 8.0, "wide"),
     Shot("path", "manipulation", 60.0, 60.0, "tool"),
+    Shot("thruster", "arm_swing", 16.0, 14.0, "chase", (DEAD,)),
     Shot("bluerov2", "hover", 6.0, 6.0, "wide", (), "bluerov2_alpha5"),
 )
 MOVIE = Shot("swing", "arm_swing", 52.0, 0.0, "wide")
