@@ -80,13 +80,16 @@ def test_invalid_output_of_one_tick_stays_inside_in_process(setting):
     assert np.linalg.norm(tick.truth.odometry.position - [0.0, 0.0, 10.0]) < 0.1
 
 
-def test_a_law_that_never_makes_a_number_leaves_the_vehicle_limp():
+def test_a_law_that_never_makes_a_number_leaves_the_vehicle_limp_and_the_arm_held():
+    loop = _loop("control.law", AlwaysNaN)
+    before = loop.tick().truth.joints.position.copy()
     loop = _loop("control.law", AlwaysNaN)
     for _ in range(40):
         tick = loop.tick()
         assert not tick.wrench.wrench.any()
-        assert not tick.joint_command.effort.any()
+        assert np.isfinite(tick.joint_command.effort).all()
         loop.advance(tick)
+    assert np.abs(tick.truth.joints.position - before).max() < np.radians(1.0)
     assert loop._process.unsafe == 40
 
 
