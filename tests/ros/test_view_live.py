@@ -3,6 +3,7 @@
 import os
 import subprocess
 import sys
+import time
 from dataclasses import dataclass
 
 import numpy as np
@@ -65,10 +66,16 @@ class Stage:
             self.tab.frame()
 
     def arrows_to_tool(self):
-        """Bring the arrows back to the tool by the button."""
+        """Bring the arrows back to the tool by the button; again while it still settles."""
         self.page.place_gizmo((self.tool + [0.0, 0.0, 0.5], np.eye(3)))
-        self.tab.press("Arrows to the tool")
-        near = lambda: np.linalg.norm(self.page.gizmo[0] - self.tool) < 0.05  # noqa: E731
+
+        def near():
+            if np.linalg.norm(self.page.gizmo[0] - self.tool) < 0.05:
+                return True
+            self.tab.press("Arrows to the tool")
+            time.sleep(1.0)  # the browser's way to the page and back
+            return False
+
         self.wait(near, "the arrows at the tool")
 
     def wait(self, condition, what):
