@@ -109,7 +109,11 @@ class DvlVelocity(Measurement):
         arm = skew(self.lever)
         variance += self._as_white * float(measured.dot(measured))
         N = variance * np.eye(3) + self._rate_variance * (arm @ arm.T)
-        return correct(state, H, measured - expected, N, gate)
+        before = state.velocity.copy()
+        distance: float = correct(state, H, measured - expected, N, gate)
+        if distance <= gate:
+            keep_reading(state, before)
+        return distance
 
 
 @exact_inner
