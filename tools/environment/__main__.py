@@ -15,10 +15,12 @@ from pathlib import Path
 import machine
 from commands import Background, Stage
 from stages import ENVIRONMENT, FOR_KERNELS, Context, plan
+from stamps import digest
 
 ROOT = Path(__file__).resolve().parents[2]
 # Stages that leave half-installed packages behind when they are interrupted.
 FRAGILE = ("runtime", "ros", "development", "packages")
+KERNELS = "kernels"
 
 
 def main():
@@ -31,6 +33,8 @@ def main():
             _use_supported_python(explicit)
             machine.check()
             _set_up(context, development, explicit)
+        elif not context.stamps().done(KERNELS, _kernel_sources(context)):
+            _compile_alone(context)
     except machine.SetupError as fault:
         print("\nThe set-up cannot go on:\n%s" % fault, file=sys.stderr)
         return 1
@@ -98,10 +102,33 @@ def _compile_kernels(context):
     return Background(command, context.env, context.log.with_name("kernels.log"))
 
 
+def _compile_alone(context):
+    """Compile the kernels anew after their sources have changed, and nothing else."""
+    kernels = _compile_kernels(context)
+    try:
+        _finish(kernels, context)
+    except BaseException:
+        kernels.stop()
+        raise
+
+
+def _kernel_sources(context):
+    """Digest of the files with kernels: all are compiled anew where one has changed."""
+    root, files = context.root, []
+    for folder in ("src", "bringup"):
+        files += sorted((root / folder).rglob("*.py"))
+    texts = {str(file.relative_to(root)): file.read_bytes() for file in files}
+    marked = [name for name, text in texts.items() if b"numba" in text or b"jit" in text]
+    return digest(root, marked)
+
+
 def _finish(kernels, context):
+    key = _kernel_sources(context)
     with Stage("compiling the numerical kernels", context.log) as running:
         running.watch(kernels)
-    if kernels.fault is not None:
+    if kernels.fault is None:
+        context.stamps().end(KERNELS, key)
+    else:
         print("[set-up] kernels not compiled ahead; the first run will try.\n%s" % kernels.fault)
 
 
