@@ -15,7 +15,7 @@ from pathlib import Path
 import machine
 from commands import Background, Stage
 from stages import ENVIRONMENT, FOR_KERNELS, Context, plan
-from stamps import digest
+from stamps import kernel_sources
 
 ROOT = Path(__file__).resolve().parents[2]
 # Stages that leave half-installed packages behind when they are interrupted.
@@ -33,7 +33,7 @@ def main():
             _use_supported_python(explicit)
             machine.check()
             _set_up(context, development, explicit)
-        elif not context.stamps().done(KERNELS, _kernel_sources(context)):
+        elif not context.stamps().done(KERNELS, kernel_sources(context.root)):
             _compile_alone(context)
     except machine.SetupError as fault:
         print("\nThe set-up cannot go on:\n%s" % fault, file=sys.stderr)
@@ -112,18 +112,8 @@ def _compile_alone(context):
         raise
 
 
-def _kernel_sources(context):
-    """Digest of the files with kernels: all are compiled anew where one has changed."""
-    root, files = context.root, []
-    for folder in ("src", "bringup"):
-        files += sorted((root / folder).rglob("*.py"))
-    texts = {str(file.relative_to(root)): file.read_bytes() for file in files}
-    marked = [name for name, text in texts.items() if b"numba" in text or b"jit" in text]
-    return digest(root, marked)
-
-
 def _finish(kernels, context):
-    key = _kernel_sources(context)
+    key = kernel_sources(context.root)
     with Stage("compiling the numerical kernels", context.log) as running:
         running.watch(kernels)
     if kernels.fault is None:

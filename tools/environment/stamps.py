@@ -26,6 +26,17 @@ def _files(path):
     raise SetupError("%s is missing; restore it with `git checkout`." % path)
 
 
+def kernel_sources(root):
+    """Digest of the files with numerical kernels, which are all compiled anew if one changes."""
+    files = []
+    for folder in ("src", "bringup"):
+        files += sorted((root / folder).rglob("*.py"))
+    texts = {str(file.relative_to(root)): file.read_bytes() for file in files}
+    return digest(
+        root, [name for name, text in texts.items() if b"numba" in text or b"jit" in text]
+    )
+
+
 class Stamps:
     """The digests of the finished stages, and the name of a stage that was begun and not ended."""
 
