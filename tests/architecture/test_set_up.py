@@ -124,7 +124,21 @@ def test_a_change_concerns_only_its_stages(tool, clone, change, stages):
     assert {name for name in after if after[name] != before[name]} == stages
 
 
+@pytest.mark.parametrize(
+    ("change", "compiles"),
+    [
+        ("src/uvms_observer/uvms_observer/navigation/propagation.py", True),
+        ("src/uvms_observer/uvms_observer/parts.py", False),
+    ],
+)
+def test_kernels_are_compiled_anew_where_one_has_changed(tool, clone, change, compiles):
+    before = tool["stamps"].kernel_sources(clone)
+    with (clone / change).open("a") as file:
+        file.write("\n")
+    assert (tool["stamps"].kernel_sources(clone) != before) is compiles
+
+
 def test_the_stamp_of_this_environment_is_complete():
     stamp = json.loads((ROOT / ".venv" / "setup.json").read_text())
     stages = {"environment", "runtime", "packages", "ros", "development", "browser", "interfaces"}
-    assert set(stamp) == stages
+    assert set(stamp) == stages | {"kernels"}
