@@ -138,6 +138,10 @@ def _in_order(text: str, words: Sequence[str]) -> bool:
     return True
 
 
+OTHERS = ("NO_COLOR", "CI", "COLUMNS", "LINES")
+"""Variables that speak of another terminal; a test runner of several processes sets some."""
+
+
 def _environment(own: Mapping[str, str]) -> dict[str, str]:
-    values = {name: text for name, text in os.environ.items() if name not in ("NO_COLOR", "CI")}
+    values = {name: text for name, text in os.environ.items() if name not in OTHERS}
     return values | {"TERM": "xterm-256color"} | dict(own)
