@@ -64,7 +64,7 @@ class ProgressLine:
         if self._bar is not None:
             self._bar.update(self._task, completed=to_seconds(stamp), speed=speed, note=note)
         elif stamp > 0:
-            done = f"{to_seconds(stamp):7.1f} of {to_seconds(self._end):.0f} s"
+            done = f"{to_seconds(stamp):7.1f} of {to_seconds(self._end):.10g} s"
             print(f"{done}  {speed}  {note}".rstrip(), file=sys.stderr, flush=True)
 
 
@@ -73,7 +73,7 @@ def _bar() -> "Progress":
     from rich.progress import BarColumn, Progress, TextColumn, TimeRemainingColumn
 
     return Progress(
-        TextColumn("{task.completed:6.1f} of {task.total:.0f} s"),
+        TextColumn("{task.completed:6.1f} of {task.total:.10g} s"),
         BarColumn(),
         TextColumn("{task.fields[speed]}"),
         TextColumn("{task.fields[note]}"),

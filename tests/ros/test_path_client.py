@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 from example_clients import imported
-from in_process import spin_until
+from in_process import Peer, spin_until
 from led_graph import running
 from test_actions import path_from_start
 
 from uvms_core.signals import to_nanoseconds
+from uvms_core.topics import REFERENCE
 
 
 @pytest.fixture
@@ -18,25 +19,17 @@ def example(monkeypatch):
 
 def followed(example, folder, frame, duration_s=120.0):
     """Where the tool was in map_ned (k, 3) while a client led it round a circle in `frame`."""
-    with running(folder, duration_s, None, lambda: example.PathClient(frame)) as (
-        spinner,
-        conductor,
-        client,
-    ):
+    makers = [lambda: example.PathClient(frame), lambda: Peer(heard=[REFERENCE])]
+    with running(folder, duration_s, None, *makers) as (spinner, conductor, client, peer):
         spin_until(spinner, lambda: client.ready)
         times, positions = example.circle(client.tool, 0.01, 8.0)
         client.send(times, positions)
-        way = []
-
-        def over() -> bool:
-            way.append(client.tool)
-            return client.ending is not None
-
-        spin_until(spinner, over)
+        spin_until(spinner, lambda: client.ending is not None)
         assert (client.ending, conductor.goal_handle) == ("succeeded", None), client.message
         assert client.feedback.duration == pytest.approx(8.0)
         assert client.feedback.tracking_error < 0.02
-    return np.array(way) @ example.FRAMES[frame] - positions[0] @ example.FRAMES[frame]
+    way = [reference.end_effector[-1] for reference in peer.heard[REFERENCE.name]]
+    return np.array(way) - positions[0] @ example.FRAMES[frame]
 
 
 def test_a_circle_is_the_same_in_map_with_its_axes_changed(example, tmp_path):

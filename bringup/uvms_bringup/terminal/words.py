@@ -11,7 +11,7 @@ EXCEEDED = "!"
 
 def time_text(glance: Glance) -> str:
     """Simulated time and how long the run is, s."""
-    return f"{glance.time:.1f} of {glance.end:.0f} s"
+    return f"{glance.time:.1f} of {glance.end:.10g} s"
 
 
 def pace_text(glance: Glance) -> str:

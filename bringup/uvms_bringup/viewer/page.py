@@ -193,7 +193,7 @@ class LogPage(Page):
 
 def status_text(source: LogSource, moment: Moment) -> str:
     """A few lines about a moment: time, tool off its target, last event."""
-    lines = [f"**{moment.time:.2f} s** of {source.end_s:.0f} s"]
+    lines = [f"**{moment.time:.2f} s** of {source.end_s:.10g} s"]
     shown = moment.true or moment.estimated
     if shown is not None and moment.target is not None:
         off = 1e3 * (tool_pose(source.vehicle, shown)[0] - moment.target)
