@@ -21,9 +21,16 @@ from uvms_dynamics import Model, build_model, thruster_matrix
 from uvms_dynamics.external_bandwidth import external_bandwidth
 from uvms_dynamics.joint_filter import JointEstimate
 from uvms_dynamics.joint_prediction import JointPrediction, encoder_variances
+from uvms_dynamics.kernels.ambient import water_wrenches
 from uvms_dynamics.payload import COLUMNS, LoadedModel
 from uvms_dynamics.sensor_noise import sensor_noise
-from uvms_observer.disturbance.external import follow_external, momentum_noise, unexplained_force
+from uvms_observer.disturbance.external import (
+    NU,
+    POSE,
+    follow_external,
+    momentum_noise,
+    unexplained_force,
+)
 from uvms_observer.disturbance.model_parts import ModelParts
 from uvms_observer.disturbance.observer_config import ObserverConfig
 from uvms_observer.disturbance.thrust_lag import ThrustLag
@@ -166,16 +173,19 @@ class DisturbanceObserver(ModelObserver):
         smooth = self._parts.nu_dot, motion.q_ddot
         force, forces = unexplained_force(self._model, dt, before, now, thrust, effort, smooth)
         noise = momentum_noise(self._model, now, odometry.twist_covariance, self._rate_variance)
-        self._explain(dt, force, forces, noise)
+        self._explain(dt, now, force, forces, noise)
         self._external = follow_external(self._filter, self._gain, force, forces, self._theta)
         self._sigma = self._spread * np.sqrt(noise[:6])
         return self._external.copy(), self._sigma
 
-    def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
+    def _explain(
+        self, dt: float, now: Array, force: Array, forces: Array, noise: Array
+    ) -> None:
         """Look for what may explain the unexplained force of the interval.
 
         Args:
             dt: its length, s.
+            now: moment (10 + 2 n,) at its end, as of `external`.
             force: (6+n,) what the motion needs beyond model (without payload) and drives; what a
                 part of the system explains may be taken off in place.
             forces: (6+n, 8) a payload's, as of `payload_forces`.
@@ -209,10 +219,14 @@ class CombinedObserver(DisturbanceObserver):
         """Thrusts of the tick before, one by one, and the shares that they were counted with."""
         self._allocation = allocation
 
-    def _explain(self, dt: float, force: Array, forces: Array, noise: Array) -> None:
+    def _explain(
+        self, dt: float, now: Array, force: Array, forces: Array, noise: Array
+    ) -> None:
         if (told := self._allocation) is not None:
             wrench = force[:6] - forces[:6] @ self._theta
-            self._monitor.step(dt, wrench, NOT_KNOWN, told.thrust, told.effectiveness)
+            q, q_dot = np.split(now[NU:], 2)
+            water = water_wrenches(self._model, now[:POSE], now[POSE:NU], q, q_dot)
+            self._monitor.step(dt, wrench, NOT_KNOWN, told.thrust, told.effectiveness, water)
             self._hand_over(force, told.effectiveness)
         if not (self._feels and self._estimator.step(dt, force, forces, noise)):
             return

@@ -5,8 +5,10 @@ The wrench that motion needs beyond whole thrusters is, tick by tick,
     r(t) = d(t) - b_i (1 - e_i) T_i(t) + noise       from the tick t_0 on, at which i fails,
 
 with the thruster's column b_i, its lagged thrust T_i and what is left of it, e_i. A stuck thruster
-gives a constant u_i instead: r = d - b_i (T_i - u_i). With d constant over the window and noise of
-known size, each onset and each thruster is a linear regression along b_i. Channels are weighted by
+gives a constant u_i instead: r = d - b_i (T_i - u_i). d is a constant and what water does that is
+not as the model has it, sum of x_j n_j(t) with x_j of known size (`uvms_dynamics.kernels.ambient`):
+as a hull turns and gathers speed in a current, d changes in step with the thrust. With noise of
+known size, each onset and each thruster is a linear regression beside d. Channels are weighted by
 1 / sigma^2; what lies across b_i must stay at the noise: a disturbance along exactly this direction
 and in step with this thrust is what no current does (Willsky and Jones 1976, "A generalized
 likelihood ratio approach", whose growing bank of onsets is cut to the window here).
@@ -34,12 +36,13 @@ smaller still if it were the other way round, a disturbance that the thrust foll
 
 
 @exact_kernel
-def weigh(residual, thrust, columns, weights, low, high, step, lags, evidence):
+def weigh(residual, thrust, water, columns, weights, low, high, step, lags, evidence):
     """Fill `evidence` (m, COLUMNS) from a window.
 
     Args:
         residual: r (k, 6), oldest first.
         thrust: lagged thrusts (k, m), N.
+        water: n (k, 6, p), wrenches that x of mean 0 and variance 1 scales.
         columns: thruster matrix (6, m).
         weights: 1 / sigma^2 (6,).
         low, high: bounds (m,) of the lost shares.
@@ -48,15 +51,10 @@ def weigh(residual, thrust, columns, weights, low, high, step, lags, evidence):
         evidence: (m, COLUMNS), written.
     """
     k, m = thrust.shape
-    total = 0.0
-    for c in range(6):
-        mean = 0.0
-        for t in range(k):
-            mean += residual[t, c]
-        mean /= k
-        for t in range(k):
-            total += weights[c] * (residual[t, c] - mean) ** 2
-    along = np.empty(k)
+    roots = np.sqrt(weights)
+    left, basis = np.empty((k, 6)), np.empty((k, 6, water.shape[2]))
+    total = _without_water(residual, water, roots, left, basis)
+    along, ways = np.empty(k), np.empty((k, water.shape[2]))
     for i in range(m):
         scale = most = 0.0
         for c in range(6):
@@ -64,63 +62,120 @@ def weigh(residual, thrust, columns, weights, low, high, step, lags, evidence):
             scale, most = scale + one, max(most, one)
         for t in range(k):
             along[t] = 0.0
+            ways[t] = 0.0
             for c in range(6):
-                along[t] += weights[c] * columns[c, i] * residual[t, c]
-            along[t] /= scale
-        _weigh_one(along, thrust, i, scale, low[i], high[i], step, total, evidence)
+                direction = roots[c] * columns[c, i]
+                along[t] += direction * left[t, c] / scale
+                for j in range(water.shape[2]):
+                    ways[t, j] += direction * basis[t, c, j] / np.sqrt(scale)
+        _weigh_one(along, ways, thrust, i, scale, low[i], high[i], step, total, evidence)
         evidence[i, BESIDES] = 1.0 - most / scale
-        evidence[i, FOLLOWED] = _followed(along, thrust, i, scale, lags, evidence)
+        evidence[i, FOLLOWED] = _followed(along, ways, thrust, i, scale, lags, evidence)
 
 
 @exact_inner
-def _weigh_one(along, thrust, i, scale, low, high, step, total, evidence):
-    """The best onset of thruster i: `along` (k,) is r in newtons of its thrust."""
-    k = along.shape[0]
+def _without_water(residual, water, roots, left, basis):
+    """Sum of squares that neither a constant nor the water explains, in sigmas.
+
+    `left` (k, 6) is written with r less both, and `basis` (k, 6, p) with the water's wrenches made
+    orthonormal (Gram-Schmidt) together with one row each of what is known of its size.
+    """
+    k, p = residual.shape[0], water.shape[2]
+    known = np.eye(p)
+    for c in range(6):
+        _centre(residual[:, c], roots[c], left[:, c])
+        for j in range(p):
+            _centre(water[:, c, j], roots[c], basis[:, c, j])
+    for j in range(p):
+        for i in range(j):
+            same = (basis[:, :, i] * basis[:, :, j]).sum() + (known[:, i] * known[:, j]).sum()
+            basis[:, :, j] -= same * basis[:, :, i]
+            known[:, j] -= same * known[:, i]
+        size = np.sqrt((basis[:, :, j] ** 2).sum() + (known[:, j] ** 2).sum())
+        basis[:, :, j] /= size
+        known[:, j] /= size
+    total = (left**2).sum()
+    for j in range(p):
+        same = (basis[:, :, j] * left).sum()
+        left -= same * basis[:, :, j]
+        total -= same * same
+    return total
+
+
+@exact_inner
+def _centre(values, root, out):
+    """Write values (k,) less their mean, times root."""
     mean = 0.0
-    for t in range(k):
-        mean += along[t]
-    mean /= k
+    for t in range(values.shape[0]):
+        mean += values[t]
+    mean /= values.shape[0]
+    for t in range(values.shape[0]):
+        out[t] = root * (values[t] - mean)
+
+
+@exact_inner
+def _weigh_one(along, ways, thrust, i, scale, low, high, step, total, evidence):
+    """The best onset of thruster i.
+
+    along (k,): r without disturbances in newtons of its thrust. ways (k, p): likewise the basis.
+    """
+    k, p = ways.shape
     evidence[i, GAIN] = 0.0
     evidence[i, KIND] = NONE
     evidence[i, INFORMATION], evidence[i, TOTAL] = 0.0, total / (6.0 * k)
     count = ft = ff = ty = sy = 0.0  # sums after the onset: T, T^2, T y, y
+    by, ones = np.zeros(p), np.zeros(p)  # of the basis times T, and of the basis
     for t in range(k - 1, -1, -1):
-        value, y = thrust[t, i], along[t] - mean
+        value, y = thrust[t, i], along[t]
         count += 1.0
         ft += value
         ff += value * value
         ty += value * y
         sy += y
+        for j in range(p):
+            by[j] += value * ways[t, j]
+            ones[j] += ways[t, j]
         if t % step or count < 4.0:
             continue
-        tt = ff - ft * ft / k  # of the regressor with the window's mean taken out
+        tt = ff - ft * ft / k  # of the regressor, without what is mean or water of it
+        bb, tb = count - count * count / k, ft - ft * count / k
+        for j in range(p):
+            tt -= by[j] * by[j]
+            bb -= ones[j] * ones[j]
+            tb -= by[j] * ones[j]
         if tt > 1e-9:
             share = min(max(-ty / tt, low), high)
             gain = -scale * (2.0 * share * ty + share * share * tt)
             _keep(evidence, i, gain, total, k, share, 1.0 / np.sqrt(scale * tt), t, WEAK, 0.0)
             if t == 0:
                 evidence[i, INFORMATION] = scale * tt
-        if t > 0:  # a constant from the start cannot be told from a disturbance
-            bb, tb = count - count * count / k, ft - ft * count / k
+        if t > 0 and bb > 1e-9:  # a constant from the start cannot be told from a disturbance
             stuck = (sy + high * tb) / bb
             gain = -scale * (high * high * tt + 2.0 * high * ty - bb * stuck * stuck)
             _keep(evidence, i, gain, total, k, high, 1.0 / np.sqrt(scale * bb), t, STUCK, stuck)
 
 
 @exact_inner
-def _followed(along, thrust, i, scale, lags, evidence):
+def _followed(along, ways, thrust, i, scale, lags, evidence):
     """Fall of chi^2 along b_i from the best fault to the best r(t - lag) = d - b_i T_i(t).
 
     A controller answers a disturbance with the opposite thrust, a little later. What looks like
-    lost thrust is then ahead of it, whereas a fault is in step with the thrust.
+    lost thrust is then ahead of it, whereas a fault is in step with the thrust. The water has what
+    it is given beside the fault.
     """
     if evidence[i, KIND] == NONE:
         return 0.0
     k, onset, stuck = along.shape[0], int(evidence[i, ONSET]), evidence[i, THRUST]
-    share, best = evidence[i, SHARE], -np.inf
+    share, best, beside = evidence[i, SHARE], -np.inf, along.copy()
+    for j in range(ways.shape[1]):
+        size = 0.0
+        for t in range(onset, k):
+            size += share * (thrust[t, i] - stuck) * ways[t, j]
+        for t in range(k):
+            beside[t] -= size * ways[t, j]
     for lag in range(lags[0], min(lags[1], k // 2) + 1):
-        fault = _spread(along, thrust, i, 0, lag, share, onset, stuck)
-        follows = _spread(along, thrust, i, lag, lag, 1.0, 0, 0.0)
+        fault = _spread(beside, thrust, i, 0, lag, share, onset, stuck)
+        follows = _spread(beside, thrust, i, lag, lag, 1.0, 0, 0.0)
         best = max(best, scale * (fault - follows))
     return best
 

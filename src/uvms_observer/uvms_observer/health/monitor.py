@@ -7,6 +7,7 @@ import numpy as np
 from uvms_core.signals import Array, ThrusterHealth
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics import thruster_matrix
+from uvms_dynamics.kernels.ambient import WATER_COLUMNS
 from uvms_observer.health import evidence as columns
 from uvms_observer.health.evidence import weigh
 from uvms_observer.health.noise import NoiseLevel
@@ -17,7 +18,8 @@ ANOTHER_PERIOD = 2.5
 """The window begins anew where ticks are this many times further apart or closer: jitter and a tick
 that is lost do not end what has been seen."""
 WINDOW_S = 2.0
-"""Within it the disturbance is taken to be constant, and a fault has to be told from it."""
+"""Within it a disturbance is taken to be constant but for what the water does to a hull that moves,
+and a fault has to be told from both."""
 ONSETS = 20
 """Onsets tried in a window: a tenth of a second apart."""
 CONFIRM_S = 0.3
@@ -30,6 +32,8 @@ PRIOR_SIGMA = 0.2
 SEARCHED, LEAST_SIGMA = 3.0, 0.03
 """A share's std is that of the regression, so many times, since its onset was searched for and the
 disturbance was not quite constant; and not below the errors of lag and curve."""
+STILL = np.zeros((6, WATER_COLUMNS))
+"""A vehicle at rest, to which the same current does the same all the time."""
 SHARE_RANGE = (-0.2, 1.0)
 """Share of the command that may be missing: a thruster may give a fifth more than the file says."""
 
@@ -80,6 +84,7 @@ class ThrusterMonitor:
         self._dt, self._size = dt, max(round(WINDOW_S / dt), 2) if dt > 0.0 else 2
         self._residuals = np.zeros((self._size, 6))
         self._thrusts = np.zeros((self._size, self._m))
+        self._waters = np.zeros((self._size, *STILL.shape))
         self._count = 0
         self._doubt()
 
@@ -88,7 +93,13 @@ class ThrusterMonitor:
         self._same, self._certain, self._candidate = 0, 0, Verdict()
 
     def step(
-        self, dt: float, unexplained: Array, sigma: Array, thrust: Array, believed: Array
+        self,
+        dt: float,
+        unexplained: Array,
+        sigma: Array,
+        thrust: Array,
+        believed: Array,
+        water: Array = STILL,
     ) -> ThrusterHealth:
         """What each thruster gives after another tick.
 
@@ -99,6 +110,8 @@ class ThrusterMonitor:
             sigma: its standard deviation (6,), as far as it is known; zeros where it is not.
             thrust: commanded over this tick (m,), N.
             believed: share (m,) with which the thrusters were counted in `unexplained`; (0,): all.
+            water: (6, 4) of `water_wrenches`: what a current and an error of the hydrodynamics may
+                be of `unexplained`.
         """
         if not self._dt / ANOTHER_PERIOD < dt < self._dt * ANOTHER_PERIOD:
             self._start(dt)
@@ -108,15 +121,16 @@ class ThrusterMonitor:
         if believed.size:
             whole = unexplained - self._matrix @ ((1.0 - believed) * lagged)
         weights = self._noise.step(dt, whole + self._matrix @ (self._lost * lagged), sigma)
-        self._push(whole, lagged)
+        self._push(whole, lagged, water)
         if self._count * 2 >= self._size:
             self._judge(weights)
         self.health = self._state()
         return self.health
 
-    def _push(self, residual: Array, thrust: Array) -> None:
-        self._residuals[:-1], self._thrusts[:-1] = self._residuals[1:], self._thrusts[1:]
-        self._residuals[-1], self._thrusts[-1] = residual, thrust
+    def _push(self, *tick: Array) -> None:
+        for window, value in zip((self._residuals, self._thrusts, self._waters), tick, strict=True):
+            window[:-1] = window[1:]
+            window[-1] = value
         self._count = min(self._count + 1, self._size)
 
     def _judge(self, weights: Array) -> None:
@@ -127,7 +141,8 @@ class ThrusterMonitor:
         low, high = SHARE_RANGE[0] - self._lost, SHARE_RANGE[1] - self._lost
         step = max(self._size // ONSETS, 1)
         lags = (max(round(FOLLOWS_S[0] / self._dt), 1), max(round(FOLLOWS_S[1] / self._dt), 1))
-        weigh(left, thrusts, self._matrix, weights, low, high, step, lags, self._evidence)
+        water, matrix = self._waters[first:], self._matrix
+        weigh(left, thrusts, water, matrix, weights, low, high, step, lags, self._evidence)
         verdict = decide(self._evidence, self._lost)
         stands = verdict.thruster >= 0 and verdict.thruster == self._candidate.thruster
         self._same = self._same + 1 if stands else 0
