@@ -50,24 +50,24 @@ def weigh(residual, thrust, water, columns, weights, low, high, step, lags, evid
         lags: least and greatest time, in ticks, by which thrust follows a disturbance.
         evidence: (m, COLUMNS), written.
     """
-    k, m = thrust.shape
+    (k, m), p = thrust.shape, water.shape[2]
     roots = np.sqrt(weights)
-    left, basis = np.empty((k, 6)), np.empty((k, 6, water.shape[2]))
+    left, basis = np.empty((6, k)), np.empty((p, 6, k))
     total = _without_water(residual, water, roots, left, basis)
-    along, ways = np.empty(k), np.empty((k, water.shape[2]))
+    along, ways = np.empty(k), np.empty((p, k))
     for i in range(m):
         scale = most = 0.0
+        along[:] = 0.0
+        ways[:] = 0.0
         for c in range(6):
-            one = weights[c] * columns[c, i] ** 2
-            scale, most = scale + one, max(most, one)
-        for t in range(k):
-            along[t] = 0.0
-            ways[t] = 0.0
-            for c in range(6):
-                direction = roots[c] * columns[c, i]
-                along[t] += direction * left[t, c] / scale
-                for j in range(water.shape[2]):
-                    ways[t, j] += direction * basis[t, c, j] / np.sqrt(scale)
+            direction = roots[c] * columns[c, i]
+            scale, most = scale + direction**2, max(most, direction**2)
+            if direction != 0.0:
+                _take_off(along, -direction, left[c])
+                for j in range(p):
+                    _take_off(ways[j], -direction, basis[j, c])
+        along /= scale
+        ways /= np.sqrt(scale)
         _weigh_one(along, ways, thrust, i, scale, low[i], high[i], step, total, evidence)
         evidence[i, BESIDES] = 1.0 - most / scale
         evidence[i, FOLLOWED] = _followed(along, ways, thrust, i, scale, lags, evidence)
@@ -77,29 +77,44 @@ def weigh(residual, thrust, water, columns, weights, low, high, step, lags, evid
 def _without_water(residual, water, roots, left, basis):
     """Sum of squares that neither a constant nor the water explains, in sigmas.
 
-    `left` (k, 6) is written with r less both, and `basis` (k, 6, p) with the water's wrenches made
+    `left` (6, k) is written with r less both, and `basis` (p, 6, k) with the water's wrenches made
     orthonormal (Gram-Schmidt) together with one row each of what is known of its size.
     """
-    k, p = residual.shape[0], water.shape[2]
+    p = water.shape[2]
     known = np.eye(p)
     for c in range(6):
-        _centre(residual[:, c], roots[c], left[:, c])
+        _centre(residual[:, c], roots[c], left[c])
         for j in range(p):
-            _centre(water[:, c, j], roots[c], basis[:, c, j])
+            _centre(water[:, c, j], roots[c], basis[j, c])
+    left, basis = left.reshape(-1), basis.reshape(p, -1)
     for j in range(p):
         for i in range(j):
-            same = (basis[:, :, i] * basis[:, :, j]).sum() + (known[:, i] * known[:, j]).sum()
-            basis[:, :, j] -= same * basis[:, :, i]
-            known[:, j] -= same * known[:, i]
-        size = np.sqrt((basis[:, :, j] ** 2).sum() + (known[:, j] ** 2).sum())
-        basis[:, :, j] /= size
-        known[:, j] /= size
-    total = (left**2).sum()
+            same = _product(basis[i], basis[j]) + _product(known[i], known[j])
+            _take_off(basis[j], same, basis[i])
+            _take_off(known[j], same, known[i])
+        size = np.sqrt(_product(basis[j], basis[j]) + _product(known[j], known[j]))
+        basis[j] /= size
+        known[j] /= size
+    total = _product(left, left)
     for j in range(p):
-        same = (basis[:, :, j] * left).sum()
-        left -= same * basis[:, :, j]
+        same = _product(basis[j], left)
+        _take_off(left, same, basis[j])
         total -= same * same
     return total
+
+
+@exact_inner
+def _product(a, b):
+    total = 0.0
+    for k in range(a.shape[0]):
+        total += a[k] * b[k]
+    return total
+
+
+@exact_inner
+def _take_off(a, size, b):
+    for k in range(a.shape[0]):
+        a[k] -= size * b[k]
 
 
 @exact_inner
@@ -117,9 +132,9 @@ def _centre(values, root, out):
 def _weigh_one(along, ways, thrust, i, scale, low, high, step, total, evidence):
     """The best onset of thruster i.
 
-    along (k,): r without disturbances in newtons of its thrust. ways (k, p): likewise the basis.
+    along (k,): r without disturbances in newtons of its thrust. ways (p, k): likewise the basis.
     """
-    k, p = ways.shape
+    p, k = ways.shape
     evidence[i, GAIN] = 0.0
     evidence[i, KIND] = NONE
     evidence[i, INFORMATION], evidence[i, TOTAL] = 0.0, total / (6.0 * k)
@@ -133,8 +148,8 @@ def _weigh_one(along, ways, thrust, i, scale, low, high, step, total, evidence):
         ty += value * y
         sy += y
         for j in range(p):
-            by[j] += value * ways[t, j]
-            ones[j] += ways[t, j]
+            by[j] += value * ways[j, t]
+            ones[j] += ways[j, t]
         if t % step or count < 4.0:
             continue
         tt = ff - ft * ft / k  # of the regressor, without what is mean or water of it
@@ -167,12 +182,12 @@ def _followed(along, ways, thrust, i, scale, lags, evidence):
         return 0.0
     k, onset, stuck = along.shape[0], int(evidence[i, ONSET]), evidence[i, THRUST]
     share, best, beside = evidence[i, SHARE], -np.inf, along.copy()
-    for j in range(ways.shape[1]):
+    for j in range(ways.shape[0]):
         size = 0.0
         for t in range(onset, k):
-            size += share * (thrust[t, i] - stuck) * ways[t, j]
+            size += share * (thrust[t, i] - stuck) * ways[j, t]
         for t in range(k):
-            beside[t] -= size * ways[t, j]
+            beside[t] -= size * ways[j, t]
     for lag in range(lags[0], min(lags[1], k // 2) + 1):
         fault = _spread(beside, thrust, i, 0, lag, share, onset, stuck)
         follows = _spread(beside, thrust, i, lag, lag, 1.0, 0, 0.0)
