@@ -47,7 +47,7 @@ def water_wrenches(model, quat, nu, q, q_dot):
 
 @exact_kernel
 def _in_current(model, nu, current, q, q_dot):
-    """h (6,) in a current (3,), m/s in body axes."""
+    """Wrench h (6,) in a current (3,), m/s in body axes."""
     nu_r, nu_r_dot = nu.copy(), np.zeros(6)
     nu_r[:3] -= current
     nu_r_dot[:3] = np.cross(nu[3:], current)

@@ -178,9 +178,7 @@ class DisturbanceObserver(ModelObserver):
         self._sigma = self._spread * np.sqrt(noise[:6])
         return self._external.copy(), self._sigma
 
-    def _explain(
-        self, dt: float, now: Array, force: Array, forces: Array, noise: Array
-    ) -> None:
+    def _explain(self, dt: float, now: Array, force: Array, forces: Array, noise: Array) -> None:
         """Look for what may explain the unexplained force of the interval.
 
         Args:
@@ -219,9 +217,7 @@ class CombinedObserver(DisturbanceObserver):
         """Thrusts of the tick before, one by one, and the shares that they were counted with."""
         self._allocation = allocation
 
-    def _explain(
-        self, dt: float, now: Array, force: Array, forces: Array, noise: Array
-    ) -> None:
+    def _explain(self, dt: float, now: Array, force: Array, forces: Array, noise: Array) -> None:
         if (told := self._allocation) is not None:
             wrench = force[:6] - forces[:6] @ self._theta
             q, q_dot = np.split(now[NU:], 2)
