@@ -14,7 +14,6 @@ from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPE
 from uvms_observer.navigation.inertial.at_once import UNUSUAL, take_inertial
 from uvms_observer.navigation.inertial.installation import Installation
 from uvms_observer.navigation.inertial.screen import (
-    ImuScreen,
     Jump,
     ScreenMemory,
     Trend,
@@ -92,10 +91,17 @@ class Estimator:
         self._now = self._rate, self._force  # what it would read at the estimator's time
         self._inertial = 0  # ns, stamp of the last IMU sample
         self._sample: ImuSample | None = None  # that sample
-        self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise, imu.period)
+        self._screen = imu.screen(self.state.excess)
         self._memory: ScreenMemory = remember(still(self._rate, self._force))
         self._before = self._rate, self._force, 1.0  # readings before the last, s between them
         self._unusual = -SETTLED  # ns, stamp of the last of them that was held back or unlikely
+
+    def _listen(self, sample: ImuSample) -> None:
+        """Take the unit to be as noisy as its message says, until the next one."""
+        excess = self._imu.excess_of(sample)
+        if (excess != self.state.excess).any():
+            self.state.excess[:] = excess
+            self._screen = self._imu.screen(excess)
 
     def copied(self) -> "Estimator":
         """An estimator that goes on alone from here."""
@@ -173,6 +179,7 @@ class Estimator:
             self.state = each.begin(self.state)
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance
+        self._listen(sample)
         self.time = self._inertial = sample.stamp
         self._sample = sample
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
@@ -189,6 +196,7 @@ class Estimator:
         sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
         if not sample.oriented:
             return False
+        self._listen(sample)
         rate_limit, force_limit = self._screen.limits(gone)
         rate, force = sample.angular_velocity, sample.linear_acceleration
         rate_now, force_now = self._now
@@ -215,6 +223,7 @@ class Estimator:
 
     def _carry(self, sample: ImuSample) -> None:
         """With the readings at both ends of the interval: second order in its length."""
+        self._listen(sample)
         dt = to_seconds(sample.stamp - self._inertial)
         if not self._memory.row:
             self._memory = remember(self._trend(), self._memory.held)

@@ -61,6 +61,8 @@ class NavigationState(NamedTuple):
     innovation: Array  # (3, WIDEST) of the last measurement: residual, std of its noise, its own
     # std; zeros beyond its size
     reference: Array  # (3,) m/s, velocity after the last correction by the DVL, see `dvl.py`
+    excess: Array  # (6,) variance of the white noise of the inertial unit's last sample beyond what
+    # the vehicle file says: rates, rad^2/s^2, and forces, m^2/s^4, body axes; see `noise.py`
     target: Array = np.zeros(0)  # (7 k,) poses of k targets, see `target.py`
     cross: Array = np.zeros((0, SIZE))  # (6 k, SIZE) covariance of their errors with e
     target_covariance: Array = np.zeros((0, 0))  # (6 k, 6 k) of their errors
@@ -87,4 +89,5 @@ def empty_state() -> NavigationState:
         np.zeros((SIZE, SIZE)),
         np.zeros((3, WIDEST)),
         np.zeros(3),
+        np.zeros(6),
     )

@@ -29,6 +29,7 @@ def take_inertial(
     gravity: float,
     gyro: float,
     accelerometer: float,
+    period: float,
     variance: Array,
     decay: Array,
     quaternion: Array,
@@ -44,7 +45,7 @@ def take_inertial(
         rate_before, rate, force_before, force: readings at both ends, (3,), as `propagate`.
         rate_limit, force_limit: largest change, along any axis, of a reading that is believed.
         dt: since the time of the state, s.
-        gravity, gyro, accelerometer, variance, decay: as `propagate`.
+        gravity, gyro, accelerometer, period, variance, decay: as `propagate`.
         quaternion, compass_variance, gate: as `correct_attitude`.
         mean: (WIDEST,) running mean of the residuals before.
         keep: share of it that stays.
@@ -69,6 +70,7 @@ def take_inertial(
             gravity,
             gyro,
             accelerometer,
+            period,
             variance,
             decay,
         )

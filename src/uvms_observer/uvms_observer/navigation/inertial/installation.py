@@ -4,9 +4,12 @@ from typing import NamedTuple
 
 import numpy as np
 
-from uvms_core.signals import Array
+from uvms_core.signals import Array, ImuSample
 from uvms_core.vehicle import Vehicle
+from uvms_core.vehicle.sensors import Imu
 from uvms_observer.navigation.begin.heading_reference import heading_bias
+from uvms_observer.navigation.inertial.screen import ImuScreen
+from uvms_observer.navigation.measurements.noise import beyond
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import COMPASS_BIAS, CURRENT, INERTIAL_BIASES, SIZE
@@ -28,6 +31,20 @@ class Installation(NamedTuple):
     force_noise: float  # m/s^2, std of the white noise of one accelerometer sample
     period: float  # s, between two samples
     faulty_bias_variance: Array  # (6,) of a unit that something has happened to
+    known_variance: Array  # (6,) of all errors of rates and forces that the vehicle file knows of
+
+    def excess_of(self, sample: ImuSample) -> Array:
+        """Variance (6,) that a sample states beyond those, see `NavigationState.excess`."""
+        rate = beyond(sample.angular_velocity_covariance, self.known_variance[:3])
+        force = beyond(sample.linear_acceleration_covariance, self.known_variance[3:])
+        return np.concatenate((rate, force))
+
+    def screen(self, excess: Array) -> ImuScreen:
+        """For readings with so much more noise (6,)."""
+        rate, force = float(excess[:3].max()), float(excess[3:].max())
+        return ImuScreen(
+            (self.rate_variance + rate) ** 0.5, (self.force_noise**2 + force) ** 0.5, self.period
+        )
 
 
 def installation(vehicle: Vehicle, config: NavigationConfig) -> Installation:
@@ -43,6 +60,7 @@ def installation(vehicle: Vehicle, config: NavigationConfig) -> Installation:
         faulty_bias_variance=np.repeat(
             [np.radians(FAULTY_GYRO_DEG_S) ** 2, FAULTY_ACCELEROMETER_M_S2**2], 3
         ),
+        known_variance=_known_variance(vehicle.sensors.imu),
     )
 
 
@@ -57,6 +75,13 @@ def attitude_variance(vehicle: Vehicle, config: NavigationConfig) -> Array:
 def rate_variance(vehicle: Vehicle) -> float:
     """White noise of one gyro sample, rad^2/s^2."""
     return float(np.radians(vehicle.sensors.imu.gyro_noise_deg_s)) ** 2
+
+
+def _known_variance(imu: Imu) -> Array:
+    noise = [np.radians(imu.gyro_noise_deg_s)] * 3 + [imu.accelerometer_noise_m_s2] * 3
+    bias = [np.radians(imu.gyro_bias_deg_s)] * 3 + [imu.accelerometer_bias_m_s2] * 3
+    variance: Array = np.square(noise) + np.square(bias)
+    return variance
 
 
 def _process_noise(vehicle: Vehicle, config: NavigationConfig) -> ProcessNoise:
@@ -80,6 +105,7 @@ def _process_noise(vehicle: Vehicle, config: NavigationConfig) -> ProcessNoise:
     return ProcessNoise(
         gyro=float(gyro**2 / imu.rate_hz),
         accelerometer=float(accelerometer**2 / imu.rate_hz),
+        period=1.0 / imu.rate_hz,
         variance=np.square(biases[9:]),
         decay=decay[9:].copy(),
     )

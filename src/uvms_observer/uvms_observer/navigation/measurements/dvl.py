@@ -109,6 +109,7 @@ class DvlVelocity(Measurement):
         arm = skew(self.lever)
         variance += self._as_white * float(measured.dot(measured))
         N = variance * np.eye(3) + self._rate_variance * (arm @ arm.T)
+        N += (arm * state.excess[:3]) @ arm.T
         before = state.velocity.copy()
         distance: float = correct(state, H, measured - expected, N, gate)
         if distance <= gate:
@@ -190,6 +191,8 @@ def correct_velocity(
     for i in range(3):
         for k in range(3):
             N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
+            for m in range(3):
+                N[i, k] += arm[i, m] * state.excess[m] * arm[k, m]
     before = state.velocity.copy()
     distance = correct(state, H, residual, N, gate)
     if distance <= gate:

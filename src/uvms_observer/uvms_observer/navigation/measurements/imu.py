@@ -128,5 +128,5 @@ def correct_gravity(
     N = np.zeros((3, 3))
     for i in range(3):
         residual[i] = measured[i] - residual[i]
-        N[i, i] = variance
+        N[i, i] = variance + state.excess[3 + i]
     return correct(state, H, residual, N, gate)

@@ -6,6 +6,10 @@ has more noise by the difference, which is added to the white one. It never has 
 knows its own noise, but not what the vehicle does to the instrument. Where a message states
 nothing (zeros, or -1 first) the vehicle file counts alone.
 
+The inertial unit's rates and forces are no measurements, but carry the state. What their messages
+state beyond the vehicle file is in the state (`NavigationState.excess`) until the next sample: it
+makes the covariance grow, and it is part of what reads rate or force.
+
 A constant error that is no state of the filter does not average out over samples. It is taken as
 noise that lasts `LASTING_S`: as so much white noise that as many samples leave it as it is.
 """
@@ -31,8 +35,14 @@ def with_stated(white: Array, stated: Array, known: Sequence[float]) -> Array:
     """
     for i, limit in enumerate(known):
         if stated[i, i] > limit:
-            return white + np.maximum(stated.diagonal() - known, 0.0)
+            return white + beyond(stated, known)
     return white
+
+
+def beyond(stated: Array, known: Sequence[float] | Array) -> Array:
+    """Variance (k,) that a message states beyond all errors that the vehicle file knows of."""
+    excess: Array = np.maximum(stated.diagonal() - known, 0.0)
+    return excess
 
 
 def as_white(std: float, rate_hz: float) -> float:
