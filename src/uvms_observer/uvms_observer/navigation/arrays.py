@@ -50,6 +50,19 @@ def product(A: Array, B: Array) -> Array:
 
 
 @exact_inner
+def filled(A: Array) -> tuple[Array, Array]:
+    """How many elements of each row (m,) are not 0, and in which columns they are (m, n)."""
+    counts = np.zeros(A.shape[0], np.int64)
+    places = np.empty(A.shape, np.int64)
+    for i in range(A.shape[0]):
+        for k in range(A.shape[1]):
+            if A[i, k] != 0.0:
+                places[i, counts[i]] = k
+                counts[i] += 1
+    return counts, places
+
+
+@exact_inner
 def covariance_of(HP: Array, H: Array, N: Array) -> Array:
     """S = H P H^T + N, (m, m), of H P (m, SIZE)."""
     m = N.shape[0]

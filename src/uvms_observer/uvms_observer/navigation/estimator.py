@@ -1,6 +1,6 @@
 """The filter proper: a state at a time, which samples carry forward and correct, one by one."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
 from dataclasses import replace
 from functools import partial
@@ -11,8 +11,8 @@ from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
 from uvms_observer.navigation.begin.alignment import aligned, levelled
 from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
-from uvms_observer.navigation.inertial.at_once import UNUSUAL, take_inertial
-from uvms_observer.navigation.inertial.installation import Installation
+from uvms_observer.navigation.inertial.at_once import packed, take_inertial
+from uvms_observer.navigation.inertial.installation import Installation, Stated
 from uvms_observer.navigation.inertial.screen import (
     Jump,
     ScreenMemory,
@@ -40,7 +40,7 @@ from uvms_observer.navigation.state import (
     empty_state,
 )
 from uvms_observer.navigation.trust import consistency, undecided
-from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
+from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally, accepted
 from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
@@ -91,17 +91,11 @@ class Estimator:
         self._now = self._rate, self._force  # what it would read at the estimator's time
         self._inertial = 0  # ns, stamp of the last IMU sample
         self._sample: ImuSample | None = None  # that sample
-        self._screen = imu.screen(self.state.excess)
+        self._excess: Stated | None = None  # noise that the last sample of the IMU states
+        self._screen = imu.screen(0.0, 0.0)
         self._memory: ScreenMemory = remember(still(self._rate, self._force))
         self._before = self._rate, self._force, 1.0  # readings before the last, s between them
         self._unusual = -SETTLED  # ns, stamp of the last of them that was held back or unlikely
-
-    def _listen(self, sample: ImuSample) -> None:
-        """Take the unit to be as noisy as its message says, until the next one."""
-        excess = self._imu.excess_of(sample)
-        if (excess != self.state.excess).any():
-            self.state.excess[:] = excess
-            self._screen = self._imu.screen(excess)
 
     def copied(self) -> "Estimator":
         """An estimator that goes on alone from here."""
@@ -126,17 +120,23 @@ class Estimator:
             for each in readings
         )
 
-    def take(self, reading: Reading) -> None:
-        """Go to the reading's stamp and use it; before the first IMU sample others are ignored."""
+    def take(self, readings: Sequence[Reading]) -> None:
+        """Go to the stamp of each reading and use it."""
+        while readings:
+            at_once = self._take_at_once(readings)
+            if not at_once:
+                self._take(readings[0])
+            readings = readings[at_once or 1 :]
+
+    def _take(self, reading: Reading) -> None:
+        """One reading in any case; before the first IMU sample others are ignored."""
         inertial = reading.name == INERTIAL.name
         if self.time is None:
             if inertial:
                 self._align(reading.sample)
         elif inertial:
-            if not self._take_at_once(reading):
-                self._carry(reading.sample)
-                if not self._measurements[reading.name].usable(reading.sample):
-                    return
+            self._carry(reading.sample)
+            if self._measurements[reading.name].usable(reading.sample):
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
@@ -179,7 +179,8 @@ class Estimator:
             self.state = each.begin(self.state)
             for index, variance in each.initial_variance.items():
                 self.state.covariance[index, index] = variance
-        self._listen(sample)
+        self._excess = None  # the state is new
+        self._listen(self._imu.excess_of(sample))
         self.time = self._inertial = sample.stamp
         self._sample = sample
         self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
@@ -187,43 +188,66 @@ class Estimator:
         self._memory = remember(still(self._rate, self._force))
         self._before = self._rate, self._force, 1.0
 
-    def _take_at_once(self, reading: Reading) -> bool:
-        """Carry and correct in the usual case; False, and nothing done, where it is another."""
-        tally, compass, imu = self.tallies[reading.name], self._compass, self._imu
-        gone = to_seconds(reading.stamp - self._inertial)
-        if compass is None or tally.row or self._memory.row or gone > GAP * imu.period:
-            return False
-        sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
-        if not sample.oriented:
-            return False
-        self._listen(sample)
-        rate_limit, force_limit = self._screen.limits(gone)
-        rate, force = sample.angular_velocity, sample.linear_acceleration
-        rate_now, force_now = self._now
-        distance, mean = take_inertial(
+    def _take_at_once(self, readings: Sequence[Reading]) -> int:
+        """Carry and correct by the first readings where they are the unit's and usual; how many."""
+        compass, samples = self._compass, self._alike(readings)
+        if compass is None or not samples:
+            return 0
+        imu, gate, tally = self._imu, self._gates[INERTIAL.name], self.tallies[INERTIAL.name]
+        taken, fits, *running = take_inertial(
             tuple(self.state),
-            *(rate_now, rate, rate_limit),
-            *(force_now, force, force_limit),
-            to_seconds(reading.stamp - time),
-            imu.gravity,
-            *imu.process,
-            *(sample.quaternion, compass.variance_of(sample), gate.limit, tally.mean, gate.keep),
+            *packed(samples),
+            *(self.time or 0, self._inertial, *self._now, *self._screen.allowance),
+            *(imu.gravity, *imu.process, compass.variance_of(samples[0]), gate.limit),
+            *(tally.distance, tally.level, tally.mean, *gate.weights),
         )
-        if distance == UNUSUAL:
-            return False
-        self.time, self._inertial = max(time, reading.stamp), reading.stamp
-        self._before = self._rate, self._force, gone
-        self._rate, self._force, self._sample = rate, force, sample
-        self._now = rate, force
-        if distance <= gate.limit:
-            self.tallies[reading.name] = gate.accepted(tally, reading.stamp, distance, mean)
-        else:
-            self._reject(reading, gate.rejected(tally, reading.stamp, self.state.innovation))
-        return True
+        if not taken:
+            return 0
+        self._remember(samples[:taken])
+        last = readings[taken - 1]
+        count = taken if fits else taken - 1
+        if count:
+            used = samples[count - 1].stamp
+            tally = self.tallies[INERTIAL.name] = accepted(tally, used, count, *running)
+        if not fits:
+            self._reject(last, gate.rejected(tally, last.stamp, self.state.innovation))
+        return int(taken)
+
+    def _alike(self, readings: Sequence[Reading]) -> list[ImuSample]:
+        """The unit's samples that come first, with an attitude, and all as noisy as they say."""
+        samples: list[ImuSample] = []
+        if self.time is None or self._memory.row or self.tallies[INERTIAL.name].row:
+            return samples
+        for reading in readings:
+            if reading.name != INERTIAL.name or not reading.sample.oriented:
+                break
+            excess = self._imu.excess_of(reading.sample)
+            if not samples:
+                self._listen(excess)
+            elif excess != self._excess:
+                break
+            samples.append(reading.sample)
+        return samples
+
+    def _listen(self, excess: Stated) -> None:
+        """Take the unit to be as noisy as a sample says, until the next one."""
+        if excess != self._excess:
+            _, rate, force = self._excess = excess
+            self.state.excess[:] = *rate, *force
+            self._screen = self._imu.screen(max(rate), max(force))
+
+    def _remember(self, samples: Sequence[ImuSample]) -> None:
+        """The readings of the unit after samples that are believed."""
+        for sample in samples[-2:]:
+            self._before = self._rate, self._force, to_seconds(sample.stamp - self._inertial)
+            self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
+            self._inertial, self._sample = sample.stamp, sample
+        self._now = self._rate, self._force
+        self.time = max(self.time or 0, self._inertial)
 
     def _carry(self, sample: ImuSample) -> None:
         """With the readings at both ends of the interval: second order in its length."""
-        self._listen(sample)
+        self._listen(self._imu.excess_of(sample))
         dt = to_seconds(sample.stamp - self._inertial)
         if not self._memory.row:
             self._memory = remember(self._trend(), self._memory.held)

@@ -68,7 +68,7 @@ def levelled(
     """
     force = sample.linear_acceleration
     angle, variance = heading(level(force)) or (0.0, np.pi**2)
-    noise = float(np.hypot(imu.force_noise, np.sqrt(imu.excess_of(sample)[3:].max())))
+    noise = float(np.hypot(imu.force_noise, max(imu.excess_of(sample)[2]) ** 0.5))
     tilt = level_variance(imu.gravity, noise, float(imu.process.variance[3]))
     return (
         replace(sample, quaternion=level(force, angle)),

@@ -14,35 +14,36 @@ A constant error that is no state of the filter does not average out over sample
 noise that lasts `LASTING_S`: as so much white noise that as many samples leave it as it is.
 """
 
-from collections.abc import Sequence
-
-import numpy as np
-
 from uvms_core.signals import Array
+
+ByAxis = tuple[float, float, float]
+"""A value for each of three axes."""
+NOTHING: ByAxis = 0.0, 0.0, 0.0
+"""What `beyond` finds in the usual case."""
 
 LASTING_S = 100.0
 """How long an error without a state is taken to last, s: some of the vehicle's manoeuvres, in which
 it changes its sign."""
 
 
-def with_stated(white: Array, stated: Array, known: Sequence[float]) -> Array:
-    """White noise (k,) of a sample, a variance.
+def with_stated(white: Array, stated: Array, known: ByAxis) -> Array:
+    """White noise (3,) of a sample, a variance.
 
     Args:
-        white: (k,) variance by the vehicle file, not below the filter's floor.
-        stated: (k, k) covariance that the message states.
-        known: (k,) variance of all errors that the vehicle file knows of.
+        white: (3,) variance by the vehicle file, not below the filter's floor.
+        stated: (3, 3) covariance that the message states.
+        known: variance of all errors that the vehicle file knows of.
     """
-    for i, limit in enumerate(known):
-        if stated[i, i] > limit:
-            return white + beyond(stated, known)
-    return white
+    excess = beyond(stated, known)
+    return white if excess is NOTHING else white + excess
 
 
-def beyond(stated: Array, known: Sequence[float] | Array) -> Array:
-    """Variance (k,) that a message states beyond all errors that the vehicle file knows of."""
-    excess: Array = np.maximum(stated.diagonal() - known, 0.0)
-    return excess
+def beyond(stated: Array, known: ByAxis) -> ByAxis:
+    """Variance that a message's covariance (3, 3) has beyond what the vehicle file knows of."""
+    x, y, z = stated.item(0), stated.item(4), stated.item(8)
+    if x <= known[0] and y <= known[1] and z <= known[2]:
+        return NOTHING
+    return max(0.0, x - known[0]), max(0.0, y - known[1]), max(0.0, z - known[2])
 
 
 def as_white(std: float, rate_hz: float) -> float:
