@@ -195,7 +195,8 @@ def _fit_together(kind: type, shapes: tuple[tuple[int, ...], ...]) -> bool:
 
 def _well_formed(signals: Sequence[Any]) -> tuple[Array, ...] | None:
     """As `well_formed`, of several signals in a row; None as well where they are unlike."""
-    kind, count = type(signals[0]), len(signals)
+    kind: Any = type(signals[0])
+    count = len(signals)
     layout = _layout(kind)
     if layout is None or (count > 1 and set(map(type, signals)) != {kind}):
         return None
@@ -217,10 +218,8 @@ def _are_certainly_good(signals: Sequence[Any]) -> bool:
     values = _well_formed(signals)
     if values is None:
         return False
-    squared = 0.0
-    for value in values:
-        squared += value.dot(value) if value.ndim == 1 else float(np.vdot(value, value))
-    return isfinite(squared)
+    numbers = np.concatenate(values, axis=None)
+    return isfinite(numbers.dot(numbers))
 
 
 def _is_rule(item: Any) -> bool:

@@ -4,10 +4,13 @@ They are loops: numba takes seconds to compile what numpy's slices, broadcasts a
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner
 from uvms_observer.navigation.state import SIZE, NavigationState
+
+Places = NDArray[np.int64]
 
 
 @exact_inner
@@ -50,7 +53,7 @@ def product(A: Array, B: Array) -> Array:
 
 
 @exact_inner
-def filled(A: Array) -> tuple[Array, Array]:
+def filled(A: Array) -> tuple[Places, Places]:
     """How many elements of each row (m,) are not 0, and in which columns they are (m, n)."""
     counts = np.zeros(A.shape[0], np.int64)
     places = np.empty(A.shape, np.int64)

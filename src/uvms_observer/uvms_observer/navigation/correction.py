@@ -167,7 +167,8 @@ def _correct_covariance(P: Array, gain: Array, H: Array, HP: Array, N: Array) ->
             if factor != 0.0:
                 for j in range(SIZE):
                     P[i, j] -= factor * HP[a, j]
-    right, counts, places = np.zeros(m), *filled(H)
+    counts, places = filled(H)
+    right = np.zeros(m)
     for i in range(SIZE):
         for a in range(m):
             total = 0.0
