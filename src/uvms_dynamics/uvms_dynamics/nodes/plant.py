@@ -70,8 +70,7 @@ class PaceConfig(Config):
 
 
 class PlantNode(UvmsNode):
-    """thruster_command and joint_command in; sensors, joint_states, battery_state, ground truth and
-    /clock out.
+    """thruster_command, joint_command in; sensors, joint_states, battery_state, truth, /clock out.
 
     Services: `start` (begin, where `auto_start` is false), `pause` (hold simulated time),
     `apply_event` (something happens to the vehicle) and `reset` (back to the start, at t = 0).
@@ -268,9 +267,8 @@ class PlantNode(UvmsNode):
         """Of attitude and battery, at most once a second, whatever else there is to report."""
         if 0 <= stamp - self._warned < DIAGNOSTICS_PERIOD:
             return
-        level, text = diagnostics.together(
-            attitude_status(quaternion), battery_status(self._plant.battery_share)
-        )
+        battery = battery_status(self._plant.battery_share)
+        level, text = diagnostics.together(attitude_status(quaternion), battery)
         if level != diagnostics.OK:
             self._warned = stamp
             self.report(stamp, level, text, **self._values)
