@@ -13,6 +13,7 @@ from uvms_bringup.scenario import Scenario
 from uvms_control.parts import AllocatorPart, ControllerPart
 from uvms_core import topics
 from uvms_core.attitude import attitude_status
+from uvms_core.battery import battery_status
 from uvms_core.diagnostics import Status, together
 from uvms_core.part import InProcess, Output, Part
 from uvms_core.plausibility import Plausibility
@@ -27,7 +28,6 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.simulation import Plant, PlantTruth, SensorFrame
-from uvms_dynamics.simulation.battery import battery_status
 from uvms_dynamics.simulation.events import status_values
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication

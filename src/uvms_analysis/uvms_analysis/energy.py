@@ -79,8 +79,10 @@ def _has_power(run: Analysis, at: Series) -> Array:
 
 
 def energy(run: Analysis) -> dict[str, Any]:
-    """Energy in Wh, all and by consumer, mean and greatest power in W; raises as
-    `electrical_power`."""
+    """Energy in Wh, all and by consumer, mean and greatest power in W.
+
+    Raises as `electrical_power`.
+    """
     power = electrical_power(run)
     total, each = power.total, _watt_hours(power.time, power.thrusters)
     if len(total) < 2:
@@ -102,8 +104,9 @@ def _watt_hours(time: Array, power: Array) -> Array:
 
 
 def battery(run: Analysis) -> dict[str, float | None]:
-    """Share of the battery that was used and that is left, least voltage, and how long a full one
-    lasts at this rate, h; None where nothing was taken.
+    """Share of the battery that was used and that is left, its least voltage, and how long it lasts.
+
+    `lasts_h` is from full to empty at the rate of the run, h; None where nothing was taken.
 
     Raises:
         LogError: the vehicle has no battery, or the log no `battery_state`.

@@ -39,7 +39,10 @@ class PowerDraw:
         return power
 
     def arm(self, effort: Array, q_dot: Array) -> Array:
-        """Power (k,) W of the joints' drives for torques (k, n) or (n,) N m at rates (k, n) rad/s."""
+        """Power (k,) W of the joints' drives.
+
+        effort (k, n) or (n,) are their torques, N m; q_dot (k, n) the rates, rad/s.
+        """
         return self._per_work * np.maximum(effort * q_dot, 0.0).sum(axis=1)
 
 

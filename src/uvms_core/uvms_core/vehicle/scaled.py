@@ -31,8 +31,8 @@ POWERS: dict[str, float] = {
 
 That of the end stops' dissipation is chosen so that the rate at which a stop takes energy from a
 joint, effort x dissipation / inertia, stays: a small copy then needs no shorter integration step.
-That of a thruster's power is the actuator disc's, T^1.5 over the root of an area. A battery holds as
-much for its mass, and is so many cells more or less side by side, with the same voltage.
+That of a thruster's power is the actuator disc's, T^1.5 over the root of an area. A battery holds
+as much for its mass, and is so many cells more or less side by side, with the same voltage.
 """
 SECTIONS = ("hull", "thrusters", "arm")
 """What is scaled, and the battery; of the sensors only the places are, and water and tether are the

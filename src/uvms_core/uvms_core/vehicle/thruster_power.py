@@ -91,14 +91,9 @@ class ThrusterPower(Part):
         t = np.asarray(thrust, dtype=float)
         if self.diameter_m is None or self.efficiency is None:
             return self._of_table(t)
-        size = np.abs(t)
-        return size * np.sqrt(size) * self._per_thrust(water_density_kg_m3)
-
-    def _per_thrust(self, density: float) -> float:
-        """The factor of |T|^1.5, W/N^1.5."""
-        assert self.diameter_m is not None and self.efficiency is not None  # the validator holds it
-        area = 0.25 * pi * self.diameter_m**2
-        return 1.0 / (self.efficiency * sqrt(2.0 * density * area))
+        area, size = 0.25 * pi * self.diameter_m**2, np.abs(t)
+        ideal = size * np.sqrt(size) / sqrt(2.0 * water_density_kg_m3 * area)
+        return ideal / self.efficiency
 
     def _of_table(self, thrust: Array) -> Array:
         points, values = _arrays(self.thrust_n, self.power_w)

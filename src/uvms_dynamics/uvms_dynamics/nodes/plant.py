@@ -10,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from uvms_core import diagnostics, topics
 from uvms_core.attitude import attitude_status
+from uvms_core.battery import battery_status
 from uvms_core.checks import MAX_AGE_S
 from uvms_core.config import Config
 from uvms_core.errors import ConfigError, StampError
@@ -26,7 +27,6 @@ from uvms_core.signals import (
 )
 from uvms_core.timeline import tolerance
 from uvms_dynamics.simulation import Plant, PlantConfig
-from uvms_dynamics.simulation.battery import battery_status
 from uvms_dynamics.simulation.events import EventsConfig, event_from_text, status_values
 from uvms_dynamics.simulation.publication import plant_outputs
 from uvms_dynamics.simulation.sensors.suite import in_order_of_publication

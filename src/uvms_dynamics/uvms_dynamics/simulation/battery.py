@@ -10,25 +10,10 @@ from math import sqrt
 
 import numpy as np
 
-from uvms_core.diagnostics import ERROR, OK, WARN
 from uvms_core.signals import Array, BatteryState
 from uvms_core.vehicle.electrical import Battery
 
 SECONDS_AN_HOUR = 3600.0
-LOW = 0.2
-"""Share of its charge below which a battery is low."""
-
-
-def battery_status(share: float | None) -> tuple[int, str]:
-    """Level and message for /diagnostics of the share of the charge that is left; None: no battery.
-
-    WARN below `LOW`, ERROR where nothing is left.
-    """
-    if share is None or share >= LOW:
-        return OK, "ok"
-    if share > 0.0:
-        return WARN, f"battery: {share:.0%} left"
-    return ERROR, "battery: empty; thrusters and joint drives have no power"
 
 
 @dataclass(frozen=True)

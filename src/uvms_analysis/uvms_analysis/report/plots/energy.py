@@ -5,7 +5,7 @@ from functools import partial
 from uvms_analysis.energy import battery_series, electrical_power
 from uvms_analysis.report.plot import Curve, Limit, Panel, Part, panel, panels
 from uvms_analysis.report.run import ReportedRun
-from uvms_dynamics.simulation.battery import LOW
+from uvms_core.battery import LOW
 
 
 def electrical(run: ReportedRun) -> list[Panel]:

@@ -4,12 +4,13 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from uvms_core.battery import battery_status
 from uvms_core.diagnostics import OK
 from uvms_core.signals import Array, BatteryState, to_nanoseconds, to_seconds
 from uvms_core.topics import BATTERY_PERIOD_S
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.power import PowerDraw
-from uvms_dynamics.simulation.battery import BatteryPack, Energy, battery_status
+from uvms_dynamics.simulation.battery import BatteryPack, Energy
 from uvms_dynamics.simulation.integrator import JOINTS
 
 
