@@ -104,7 +104,7 @@ def _watt_hours(time: Array, power: Array) -> Array:
 
 
 def battery(run: Analysis) -> dict[str, float | None]:
-    """Share of the battery that was used and that is left, its least voltage, and how long it lasts.
+    """Share of the battery that was used and is left, its least voltage, and how long it lasts.
 
     `lasts_h` is from full to empty at the rate of the run, h; None where nothing was taken.
 
