@@ -11,7 +11,6 @@ import numpy as np
 
 from uvms_analysis.analysis import Analysis, at_common_stamps
 from uvms_analysis.errors import LogError
-from uvms_analysis.log import plant_record
 from uvms_analysis.log.read import Series
 from uvms_core import topics
 from uvms_core.signals import Array
@@ -20,7 +19,15 @@ from uvms_dynamics.power import PowerDraw
 
 SECONDS_AN_HOUR = 3600.0
 
-ENERGY = ("total_wh", "propulsion_wh", "arm_wh", "hotel_wh", "power_mean_w", "power_max_w")
+ENERGY = (
+    "total_wh",
+    "propulsion_wh",
+    "arm_wh",
+    "hotel_wh",
+    "power_mean_w",
+    "power_max_w",
+    "thrusters_wh",
+)
 BATTERY = ("used", "left", "least_voltage_v", "lasts_h")
 """Names of the figures of `energy` and `battery`."""
 
@@ -47,7 +54,7 @@ def electrical_power(run: Analysis) -> Power:
         LogError: the log lacks thrusts, joints or vehicle, or the vehicle file does not say what
             they take.
     """
-    vehicle = _vehicle(run)
+    vehicle = run.log.plant_vehicle
     if vehicle.lacks_power:
         raise LogError(vehicle.lacks_power)
     draw = PowerDraw(vehicle)
@@ -65,12 +72,11 @@ def electrical_power(run: Analysis) -> Power:
     )
 
 
-def _vehicle(run: Analysis) -> Vehicle:
-    return plant_record.vehicle(run.log) or run.vehicle
-
-
 def _has_power(run: Analysis, at: Series) -> Array:
-    """1 at each time of a series (k,), 0 from where the battery is empty on."""
+    """1 at each time of a series (k,), 0 from where the battery says that it is empty on.
+
+    It says so once a second, so that a run that empties it is given up to a second too much.
+    """
     if not run.log.has(topics.BATTERY_STATE):
         return np.ones(len(at))
     said = run.log.series(topics.BATTERY_STATE)
@@ -125,7 +131,7 @@ def battery(run: Analysis) -> dict[str, float | None]:
 def battery_series(run: Analysis) -> Series:
     """What the battery says over time, where its charge is known; raises as `battery`."""
     if not run.log.has(topics.BATTERY_STATE):
-        raise LogError(_why_no_battery(_vehicle(run)))
+        raise LogError(_why_no_battery(run.log.plant_vehicle))
     said = run.log.series(topics.BATTERY_STATE)
     known = said.take(np.flatnonzero(np.isfinite(said.percentage)))
     if not len(known):

@@ -5,14 +5,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.log.read import RunLog
-from uvms_core.errors import VehicleFileError
-from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.loader import vehicle_from_yaml
+from uvms_analysis.log.read import PLANT_VEHICLE, RunLog
 
 NAME = "plant"
-VEHICLE_FILE = "plant_vehicle.yaml"
-"""Attachment with the plant's own vehicle, where it is not the nominal one."""
+VEHICLE_FILE = PLANT_VEHICLE
 FIELDS = ("vehicle_overrides", "mismatch")
 
 
@@ -32,18 +28,3 @@ def read(log: RunLog) -> dict[str, Any]:
         return {name: json.loads(record.get(name, "{}")) for name in FIELDS}
     except ValueError as fault:
         raise LogError(f"log {log.path}: its record of the plant is damaged: {fault}") from fault
-
-
-def vehicle(log: RunLog) -> Vehicle | None:
-    """The plant's own vehicle; None where it is the nominal one.
-
-    Raises:
-        LogError: its attachment is damaged.
-    """
-    if VEHICLE_FILE not in log.attachments:
-        return None
-    what = f"log {log.path}: its attachment {VEHICLE_FILE!r}"
-    try:
-        return vehicle_from_yaml(log.text(VEHICLE_FILE), what)
-    except VehicleFileError as fault:
-        raise LogError(str(fault)) from fault
