@@ -90,7 +90,8 @@ def test_thrusters_of_several_kinds_are_told_apart():
     thrust = np.random.default_rng(1).uniform(-49.0, 49.0, (5, 7))
     found = PowerDraw(mixed).thrusters(thrust)
     for k, thruster in enumerate(mixed.thrusters):
-        assert np.array_equal(found[:, k], thruster.power.power(thrust[:, k], DENSITY))
+        expected = thruster.power.power(thrust[:, k], DENSITY)
+        np.testing.assert_allclose(found[:, k], expected, rtol=1e-12)
 
 
 def test_what_the_battery_loses_is_what_it_gives_and_what_its_resistance_takes():

@@ -26,15 +26,18 @@ class PowerDraw:
         if vehicle.electrical is None or vehicle.lacks_power:
             raise ConfigError(vehicle.lacks_power)
         self._density = vehicle.environment.water_density_kg_m3
-        self._groups = _groups([thruster.power for thruster in vehicle.thrusters])
+        kinds = [thruster.power for thruster in vehicle.thrusters]
+        self._per_disc = np.array([_of_one_newton(kind, self._density) for kind in kinds])
+        self._tables = _tables(kinds)
         self._per_work = 1.0 / vehicle.electrical.arm_efficiency
         self.hotel: float = vehicle.electrical.hotel_load_w
         """Power that is taken all the time, W."""
 
     def thrusters(self, thrust: Array) -> Array:
         """Power (k, m) W of thrusts (k, m) N."""
-        power = np.empty_like(thrust)
-        for kind, columns in self._groups:
+        size = np.abs(thrust)
+        power: Array = size * np.sqrt(size) * self._per_disc
+        for kind, columns in self._tables:
             power[:, columns] = kind.power(thrust[:, columns], self._density)
         return power
 
@@ -46,15 +49,21 @@ class PowerDraw:
         return self._per_work * np.maximum(effort * q_dot, 0.0).sum(axis=1)
 
 
+def _of_one_newton(kind: ThrusterPower | None, density: float) -> float:
+    """That of an actuator disc, W, from which all others follow; 0 for a table."""
+    return float(kind.power(1.0, density)) if kind is not None and kind.is_disc else 0.0
+
+
 Columns = slice | NDArray[np.intp]
 
 
-def _groups(kinds: list[ThrusterPower | None]) -> list[tuple[ThrusterPower, Columns]]:
-    """Each kind of thruster once, with the columns of those that are of it."""
+def _tables(kinds: list[ThrusterPower | None]) -> list[tuple[ThrusterPower, Columns]]:
+    """Each table once, with the columns of the thrusters that have it."""
     found: dict[ThrusterPower, list[int]] = {}
     for column, kind in enumerate(kinds):
-        if kind is not None:
+        if kind is not None and not kind.is_disc:
             found.setdefault(kind, []).append(column)
-    if len(found) == 1:
-        return [(next(iter(found)), slice(None))]
-    return [(kind, np.array(columns)) for kind, columns in found.items()]
+    return [
+        (kind, slice(None) if len(columns) == len(kinds) else np.array(columns))
+        for kind, columns in found.items()
+    ]

@@ -76,6 +76,11 @@ class ThrusterPower(Part):
                 f" {thrust[k]:g} to {thrust[k + 1]:g} N; it must rise with the size of the thrust"
             )
 
+    @property
+    def is_disc(self) -> bool:
+        """Whether it is an actuator disc, whose power goes with |T|^1.5."""
+        return self.diameter_m is not None
+
     def check_within(self, astern_n: float) -> None:
         """ValueError unless it says what a thruster takes that gives this thrust astern, N."""
         if self.thrust_n and astern_n < 0.0 and self.thrust_n[0] == 0.0:

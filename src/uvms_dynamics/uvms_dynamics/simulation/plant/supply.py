@@ -31,6 +31,7 @@ class Supply:
         self._n, self._step_s = vehicle.n_joints, to_seconds(step)
         self._period = to_nanoseconds(BATTERY_PERIOD_S)
         self._thrusters, self._arm, self._hotel = np.zeros(vehicle.n_thrusters), 0.0, 0.0
+        self._weights = np.empty(0)  # of the trapezoidal rule, s
         self._last_due = -1
         self._told = OK
 
@@ -58,18 +59,18 @@ class Supply:
         """
         if self._draw is None or self.is_empty:
             return
-        first, seconds = JOINTS + self._n, self._step_s * (len(states) - 1)
+        first, steps = JOINTS + self._n, len(states) - 1
+        if len(self._weights) != len(states):
+            self._weights = self._step_s * np.array([0.5, *[1.0] * (steps - 1), 0.5])
+        seconds = self._step_s * steps
         rates, thrust = states[:, first : first + self._n], states[:, first + self._n :]
-        thrusters = self._integral(self._draw.thrusters(thrust))
-        arm = float(self._integral(self._draw.arm(effort, rates)))
+        thrusters = self._weights @ self._draw.thrusters(thrust)
+        arm = float(self._weights @ self._draw.arm(effort, rates))
         hotel = self._draw.hotel * seconds
         self._thrusters += thrusters
         self._arm, self._hotel = self._arm + arm, self._hotel + hotel
         if self._pack is not None:
             self._pack.take((float(thrusters.sum()) + arm + hotel) / seconds, seconds)
-
-    def _integral(self, power: Array) -> Array:
-        return self._step_s * (power.sum(axis=0) - 0.5 * (power[0] + power[-1]))
 
     def sample(self, stamp: int) -> BatteryState | None:
         """The battery's state at a control tick, ns, where one is due; None in between."""
