@@ -156,7 +156,7 @@ def test_an_empty_battery_drives_nothing_and_gives_no_more():
     assert own.energy.total == taken
     assert taken == pytest.approx(3000.0 * 3600.0 * share, rel=0.02)  # a tick's worth
     texts = [happened.text for happened in own.take_happened()]
-    assert "battery: 0% left" in texts
+    assert f"battery: {100.0 * share:.3g}% left" in texts
     assert "battery: empty; thrusters and joint drives have no power" in texts
 
 

@@ -14,5 +14,5 @@ def battery_status(share: float | None) -> tuple[int, str]:
     if share is None or share >= LOW:
         return OK, "ok"
     if share > 0.0:
-        return WARN, f"battery: {share:.0%} left"
+        return WARN, f"battery: {100.0 * share:.3g}% left"
     return ERROR, "battery: empty; thrusters and joint drives have no power"
