@@ -65,7 +65,11 @@ def test_an_empty_battery_gives_nothing(tmp_path):
     power = electrical_power(run)
     assert not power.total[power.time >= 1024.0].any()
     assert power.total[power.time < 1024.0].min() > 60.0
-    assert battery(run)["left"] == 0.0
+    found = battery(run)
+    assert found["left"] == 0.0
+    assert found["used"] == 0.5
+    # Half of it lasted 1024 s, and the sample after that says so; the rest of the hour counts not.
+    assert found["lasts_h"] == pytest.approx(2.0 * 1030.0 / 3600.0)
 
 
 def test_what_the_battery_says_of_its_use(tmp_path):

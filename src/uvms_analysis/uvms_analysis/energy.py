@@ -118,7 +118,10 @@ def battery(run: Analysis) -> dict[str, float | None]:
         LogError: the vehicle has no battery, or the log no `battery_state`.
     """
     said = battery_series(run)
-    share, hours = said.percentage, float(said.time[-1] - said.time[0]) / SECONDS_AN_HOUR
+    share = said.percentage
+    empty = np.flatnonzero(share <= 0.0)
+    last = int(empty[0]) if len(empty) else len(share) - 1  # after that nothing is taken
+    hours = float(said.time[last] - said.time[0]) / SECONDS_AN_HOUR
     used = float(share[0] - share[-1])
     return {
         "used": used,
