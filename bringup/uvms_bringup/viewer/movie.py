@@ -7,13 +7,17 @@ import numpy as np
 from PIL import Image
 
 from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.cameras import FOLLOWING, view_of
 from uvms_bringup.viewer.log_source import LogSource
-from uvms_bringup.viewer.picture import picture
+from uvms_bringup.viewer.picture import DEEP, SKY, picture
 from uvms_bringup.viewer.scene_model import SceneModel
+from uvms_core.signals import Array
 
 SIZE = (640, 360)
-RATES = {".gif": 10, ".mp4": 25}
+RATES = {".gif": 8, ".mp4": 25}
 """Frames a second by the file's suffix."""
+COLOURS = 128
+"""Of a GIF, whose background is of one: a slow change of colour would be steps in it."""
 PALETTE_FRAMES = 6
 """From which the colours of a GIF are taken, evenly over it."""
 LONGEST_S = 10.0
@@ -45,8 +49,8 @@ def write_movie(
         path.touch()  # before the work, which takes its time
         if path.suffix == ".gif":
             few = times[:: max(len(times) // PALETTE_FRAMES, 1)]
-            palette = _palette(list(_frames(source, few, preset)))
-            _write_gif(path, _frames(source, times, preset), rate, palette)
+            palette = _palette(list(_frames(source, few, preset, SKY)))
+            _write_gif(path, _frames(source, times, preset, SKY), rate, palette)
         else:
             _write_mp4(path, _frames(source, times, preset), rate)
     except OSError as fault:
@@ -54,10 +58,15 @@ def write_movie(
     return path
 
 
-def _frames(source: LogSource, times: np.ndarray, preset: str) -> Iterator[Image.Image]:
+def _frames(
+    source: LogSource, times: np.ndarray, preset: str, deep: Array = DEEP
+) -> Iterator[Image.Image]:
+    """A camera that does not follow stays where it is at the start of the times."""
     model = SceneModel(source.setting)
+    first = model.all_places(source.moment(float(times[0])))
+    view = preset if preset in FOLLOWING else view_of(preset, model, first)
     for time in times:
-        yield picture(model, source.moment(float(time)), preset, source.name, SIZE)
+        yield picture(model, source.moment(float(time)), view, source.name, SIZE, deep)
 
 
 def _palette(frames: list[Image.Image]) -> Image.Image:
@@ -66,7 +75,7 @@ def _palette(frames: list[Image.Image]) -> Image.Image:
     An octree keeps those of small things, such as the side lights.
     """
     joined = Image.fromarray(np.vstack([np.asarray(frame) for frame in frames]))
-    return joined.quantize(256, Image.Quantize.FASTOCTREE)
+    return joined.quantize(COLOURS, Image.Quantize.FASTOCTREE)
 
 
 def _write_gif(path: Path, frames: Iterator[Image.Image], rate: int, palette: Image.Image) -> None:
