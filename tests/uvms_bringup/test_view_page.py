@@ -1,5 +1,7 @@
 """The page of a run in a headless browser, the shared file, pictures and movies."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from browser import browser_tab
@@ -8,10 +10,11 @@ from viewed import pixel_of, served, short_run
 
 from uvms_bringup.cli import main
 from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.cameras import view_of
 from uvms_bringup.viewer.elements import world_pose
 from uvms_bringup.viewer.export import export, frame_times
 from uvms_bringup.viewer.log_source import LogSource
-from uvms_bringup.viewer.movie import write_movie
+from uvms_bringup.viewer.movie import held, write_movie
 from uvms_bringup.viewer.overview import Plot
 from uvms_bringup.viewer.page import LogPage, Site
 from uvms_bringup.viewer.picture import picture
@@ -192,6 +195,19 @@ def test_the_command_writes_picture_and_movies(run, source, tmp_path, capsys):
         assert movie.n_frames == 2
     mp4 = write_movie(source, tmp_path / "run.mp4", "tool", (0.0, 0.2), speed=2.5)
     assert mp4.read_bytes()[4:8] == b"ftyp"
+
+
+def test_the_camera_of_a_movie_stands_still_unless_the_vehicle_goes_away(source):
+    model, times = SceneModel(source.setting), np.array([0.0, 4.0, 8.0])
+    first = view_of("bow", model, model.all_places(source.moment(0.0)))
+    assert np.array_equal(held(source.moment, model, times, "bow").look_at, first.look_at)
+
+    def far(time):
+        moment = source.moment(time)
+        away = replace(moment.estimated, position=moment.estimated.position + [time, 0.0, 0.0])
+        return replace(moment, estimated=away)
+
+    assert held(far, model, times, "bow") == "bow"
 
 
 @pytest.mark.parametrize(

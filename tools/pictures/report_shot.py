@@ -22,7 +22,9 @@ CARDS = "document.querySelector('section.cards')"
 PLOT = "document.getElementById('plot-tool_error').closest('section')"
 """What the upper part ends with, and the plots below it."""
 EDGE = (150, 160, 170)
-BOX = "(e => { const r = e.getBoundingClientRect(); return [scrollY + r.top, scrollY + r.bottom]; })"
+BOX = (
+    "(e => { const r = e.getBoundingClientRect(); return [scrollY + r.top, scrollY + r.bottom]; })"
+)
 QUESTION = re.compile(r"<h2>(.*?)</h2>")
 CARD = re.compile(r'<div class="card"><h3>(.*?)</h3><p class="big">([-\d.eg]+) <span>(.*?)</span>')
 
@@ -42,15 +44,15 @@ def photograph(report: Path, picture: Path) -> Path:
         tab.width(WIDTH)
         tab.open(report.as_uri())
         tab.colours("light")
+        upper = _part(tab, 0.0, _box(tab, CARDS)[1] + GAP)  # before its bar goes along with us
         tab.evaluate(f"{PLOT}.scrollIntoView({{block: 'center'}})")
         drawn = f"[...{PLOT}.querySelectorAll('.canvas')].every(e => e.querySelector('canvas'))"
         tab.wait(lambda: tab.evaluate(drawn), "the plots")
         tab.frame()
-        end = _box(tab, CARDS)[1]
         top, bottom = _box(tab, PLOT)
-        parts = [_part(tab, 0.0, end + GAP), _part(tab, top, bottom)]
+        lower = _part(tab, top, bottom)
     edge = np.full((2, WIDTH, 3), EDGE, dtype=np.uint8)
-    Image.fromarray(np.vstack([parts[0], edge, parts[1]])).quantize(128).save(picture, optimize=True)
+    Image.fromarray(np.vstack([upper, edge, lower])).quantize(128).save(picture, optimize=True)
     return picture
 
 

@@ -1,14 +1,15 @@
 """Movies of a run without browser: GIF, or MP4 by the ffmpeg that a package brings along."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from uvms_bringup.errors import ViewError
-from uvms_bringup.viewer.cameras import FOLLOWING, view_of
+from uvms_bringup.viewer.cameras import FOLLOWING, View, view_of
 from uvms_bringup.viewer.log_source import LogSource
+from uvms_bringup.viewer.moment import Moment
 from uvms_bringup.viewer.picture import DEEP, SKY, picture
 from uvms_bringup.viewer.scene_model import SceneModel
 from uvms_core.signals import Array
@@ -20,6 +21,9 @@ COLOURS = 128
 """Of a GIF, whose background is of one: a slow change of colour would be steps in it."""
 PALETTE_FRAMES = 6
 """From which the colours of a GIF are taken, evenly over it."""
+LOOKS, STAYS = 30, 0.5
+"""How often it is asked where the vehicle is, and how far it may go, in diagonals of its hull,
+while the camera stands still, which makes a movie calm and a GIF small."""
 LONGEST_S = 10.0
 """Of a movie for which no speed is asked: the run is played so much faster."""
 
@@ -61,12 +65,20 @@ def write_movie(
 def _frames(
     source: LogSource, times: np.ndarray, preset: str, deep: Array = DEEP
 ) -> Iterator[Image.Image]:
-    """A camera that does not follow stays where it is at the start of the times."""
     model = SceneModel(source.setting)
-    first = model.all_places(source.moment(float(times[0])))
-    view = preset if preset in FOLLOWING else view_of(preset, model, first)
+    view = preset if preset in FOLLOWING else held(source.moment, model, times, preset)
     for time in times:
         yield picture(model, source.moment(float(time)), view, source.name, SIZE, deep)
+
+
+def held(
+    moment: Callable[[float], Moment], model: SceneModel, times: np.ndarray, preset: str
+) -> View | str:
+    """The view at the first time where the vehicle stays about there, else one that follows."""
+    few = times[:: max(len(times) // LOOKS, 1)]
+    views = [view_of(preset, model, model.all_places(moment(float(time)))) for time in few]
+    gone = max(float(np.linalg.norm(view.look_at - views[0].look_at)) for view in views)
+    return views[0] if gone < STAYS * model.diagonal else preset
 
 
 def _palette(frames: list[Image.Image]) -> Image.Image:

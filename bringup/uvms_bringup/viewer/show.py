@@ -13,7 +13,8 @@ from uvms_bringup.errors import ViewError
 from uvms_bringup.viewer.log_source import LogSource
 
 if TYPE_CHECKING:
-    from uvms_bringup.viewer.page import Page, Site
+    from uvms_bringup.viewer.live_page import LivePage
+    from uvms_bringup.viewer.page import LogPage, Site
 
 
 def show(options: Namespace) -> int:
@@ -44,7 +45,7 @@ def _site(options: Namespace) -> Site:
     return Site(options.host, options.port, options.quality)
 
 
-def _serve(page: Page, name: str, options: Namespace) -> None:
+def _serve(page: LogPage | LivePage, name: str, options: Namespace) -> None:
     print(f"{name}: {page.address} (Ctrl-C ends it)", flush=True)
     if not options.no_browser:
         webbrowser.open(page.address)
