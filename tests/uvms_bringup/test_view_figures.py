@@ -71,7 +71,7 @@ def test_the_movie_is_current(swing):
     now = GALLERY.movie_told(LogSource(swing))
     assert (kept["arguments"], kept["speed"]) == (GALLERY.MOVIE.arguments, now["speed"]), AGAIN
     assert differences(kept, now) == [], AGAIN
-    kept["shown"]["23 s: estimated/link_3/0"][-1][0] += 0.1
+    kept["shown"]["23 s: estimated/tool"][-1][0] += 0.1
     assert differences(kept, now)  # an arm elsewhere would be told
 
 

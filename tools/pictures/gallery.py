@@ -3,7 +3,10 @@
 from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
 from uvms_bringup.viewer.describe import describe
+from uvms_bringup.viewer.elements import world_pose
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.scene_model import SceneModel
 
@@ -55,10 +58,17 @@ MOVIE_TOLD_S = 0.0, 13.0, 23.0, 36.0
 
 
 def movie_told(source: LogSource) -> dict[str, Any]:
-    """What the movie of a run shows at some moments, as `describe` tells of a picture."""
+    """What the movie of a run shows at some moments, as `describe` tells of a picture, and the arm.
+
+    Of the arm it is the places of its links and tool, in map_ned.
+    """
     model, shown = SceneModel(source.setting), {}
     for time in MOVIE_TOLD_S:
-        told = describe(model, source.moment(time), MOVIE.camera)["shown"]
+        moment = source.moment(time)
+        told = describe(model, moment, MOVIE.camera)["shown"]
+        places = model.all_places(moment)
+        for name in (*model.estimated.links, model.estimated.tool):
+            told[name] = ["frame", "", np.round(world_pose(name, places)[0], 3).tolist()]
         shown |= {f"{time:g} s: {name}": what for name, what in told.items()}
     first = describe(model, source.moment(MOVIE_TOLD_S[0]), MOVIE.camera)
     return {"speed": MOVIE_SPEED, "camera": first["camera"], "shown": shown}
