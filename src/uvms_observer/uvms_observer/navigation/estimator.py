@@ -27,7 +27,7 @@ from uvms_observer.navigation.inertial.unknown_motion import (
     gap_spread,
     spread,
 )
-from uvms_observer.navigation.measurements.base import Measurement
+from uvms_observer.navigation.measurements.base import Linear, Measurement
 from uvms_observer.navigation.measurements.imu import Gyrocompass
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.output import odometry
@@ -40,8 +40,9 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.trust import consistency, undecided
-from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
+from uvms_observer.navigation.trust import consistency, lasting, undecided
+from uvms_observer.navigation.trust.innovation_gate import CHANCES, InnovationGate, Tally
+from uvms_observer.navigation.trust.lasting import Lasting, Verdict
 from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
@@ -83,6 +84,8 @@ class Estimator:
         }
         self.tallies = dict.fromkeys(measurements, Tally())
         self._doubts: dict[str, Doubt] = {}  # of the sensors whose last sample was rejected
+        self._lasting: Lasting | None = None  # a sensor that has jumped, whose changes are used
+        self._alike: dict[str, tuple[Array, int]] = {}  # last reading, and how often it came
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
@@ -103,6 +106,7 @@ class Estimator:
         other.state = self.state.copied()
         other.tallies = dict(self.tallies)
         other._doubts = dict(self._doubts)
+        other._alike = dict(self._alike)
         return other
 
     def look_for_heading(self, readings: Iterable[Reading]) -> None:
@@ -287,7 +291,7 @@ class Estimator:
         self.tallies = {
             name: Tally(tally.accepted, tally.gated) for name, tally in self.tallies.items()
         }
-        self._doubts = {}
+        self._doubts, self._lasting = {}, None
         if self._sample is not None:
             self._align(self._sample)
             self.advance(now)
@@ -320,6 +324,11 @@ class Estimator:
 
     def _correct(self, reading: Reading) -> None:
         name = reading.name
+        if self._is_stuck(reading):
+            self.tallies[name] = self._gates[name].refused(self.tallies[name], reading.stamp)
+            return
+        if self._lasting is not None and self._lasting.name == name and self._follow(reading):
+            return
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._now[0])
         tally = self._gates[name].apply(
@@ -327,9 +336,69 @@ class Estimator:
         )
         if tally.row:
             self._reject(reading, tally)
+            self._begin_to_follow(reading)
         else:
             self.tallies[name] = tally
             self._doubts.pop(name, None)
+
+    def _is_stuck(self, reading: Reading) -> bool:
+        """Whether the sensor has read the same to the last bit too often to be a measurement."""
+        name, measurement = reading.name, self._measurements[reading.name]
+        if measurement.most_alike is None:
+            return False
+        values, count = measurement.reading(reading.sample), 1
+        if name in self._alike and np.array_equal(self._alike[name][0], values):
+            count += self._alike[name][1]
+        self._alike[name] = values, count
+        is_stuck = count > measurement.most_alike
+        if is_stuck and self._lasting is not None and self._lasting.name == name:
+            self._lasting = self._lasting._replace(chances=CHANCES)  # the next other one is a jump
+        return is_stuck
+
+    def _begin_to_follow(self, reading: Reading) -> None:
+        """After a sample that was rejected: if the sensor has just jumped, use its changes."""
+        tally, measurement = self.tallies[reading.name], self._measurements[reading.name]
+        is_new = tally.row == 1 and tally.away is not None and tally.used is not None
+        if is_new and measurement.follows and not self._lasting and lasting.has_room(self.state):
+            self._lasting = self._jumped(reading)
+
+    def _jumped(self, reading: Reading, chances: int = 0) -> Lasting:
+        """What is kept of a sensor that has jumped with this sample."""
+        sample = self._about(reading)
+        self.state = lasting.with_offset(self.state, sample)
+        by, attitude = float(np.linalg.norm(sample.residual)), self.state.quaternion.copy()
+        return Lasting(reading.name, by, attitude, 0.0, reading.stamp, chances)
+
+    def _about(self, reading: Reading) -> Linear:
+        return self._measurements[reading.name].about(self.state, reading.sample, self._now[0])
+
+    def _follow(self, reading: Reading) -> bool:
+        """Use a sample of a sensor that has jumped by its changes; False where it is right again.
+
+        It still counts as rejected: the sensor is off.
+        """
+        name, stamp, kept = reading.name, reading.stamp, self._lasting
+        tally = self.tallies[name]
+        if kept is None or tally.away is None:
+            return False
+        kept, sample = lasting.aged(self.state, kept, stamp), self._about(reading)
+        verdict = lasting.judged(self.state, kept, sample)
+        if verdict is Verdict.BACK:
+            self._stop_following()
+            self.tallies[name] = tally._replace(away=tally.away.back(sample.residual))
+            return False
+        if verdict is Verdict.GONE:
+            self._stop_following()
+            self._lasting = self._jumped(reading, CHANCES)
+        else:
+            lasting.correct_by_changes(self.state, sample)
+            self._lasting = kept._replace(chances=max(kept.chances - 1, 0))
+        self._reject(reading, self._gates[name].rejected(tally, stamp, self.state.innovation, tally.away))
+        return True
+
+    def _stop_following(self) -> None:
+        if self._lasting is not None:
+            self.state, self._lasting = lasting.without_offset(self.state), None
 
     def _reject(self, reading: Reading, tally: Tally) -> None:
         """Keep the tally of a sample that is not used, and what it would have changed."""
@@ -351,4 +420,7 @@ class Estimator:
 
     def _forget_jumps(self, names: Iterable[str]) -> None:
         """Let these sensors come back where they agree, without a jump back."""
-        self.tallies |= {name: self.tallies[name]._replace(away=None) for name in names}
+        for name in tuple(names):
+            self.tallies[name] = self.tallies[name]._replace(away=None)
+            if self._lasting is not None and self._lasting.name == name:
+                self._stop_following()
