@@ -41,7 +41,7 @@ from uvms_observer.navigation.state import (
     empty_state,
 )
 from uvms_observer.navigation.trust import consistency, lasting, undecided
-from uvms_observer.navigation.trust.innovation_gate import CHANCES, InnovationGate, Tally
+from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.trust.lasting import Lasting, Verdict
 from uvms_observer.navigation.trust.undecided import Doubt
 
@@ -352,7 +352,7 @@ class Estimator:
         self._alike[name] = values, count
         is_stuck = count > measurement.most_alike
         if is_stuck and self._lasting is not None and self._lasting.name == name:
-            self._lasting = self._lasting._replace(chances=CHANCES)  # the next other one is a jump
+            self._lasting = self._lasting._replace(returns=True)  # the next other one is a jump
         return is_stuck
 
     def _begin_to_follow(self, reading: Reading) -> None:
@@ -362,12 +362,12 @@ class Estimator:
         if is_new and measurement.follows and not self._lasting and lasting.has_room(self.state):
             self._lasting = self._jumped(reading)
 
-    def _jumped(self, reading: Reading, chances: int = 0) -> Lasting:
+    def _jumped(self, reading: Reading) -> Lasting:
         """What is kept of a sensor that has jumped with this sample."""
         sample = self._about(reading)
         self.state = lasting.with_offset(self.state, sample)
         by, attitude = float(np.linalg.norm(sample.residual)), self.state.quaternion.copy()
-        return Lasting(reading.name, by, attitude, 0.0, reading.stamp, chances)
+        return Lasting(reading.name, by, attitude, 0.0, reading.stamp)
 
     def _about(self, reading: Reading) -> Linear:
         return self._measurements[reading.name].about(self.state, reading.sample, self._now[0])
@@ -378,21 +378,25 @@ class Estimator:
         It still counts as rejected: the sensor is off.
         """
         name, stamp, kept = reading.name, reading.stamp, self._lasting
-        tally = self.tallies[name]
+        tally, measurement = self.tallies[name], self._measurements[name]
         if kept is None or tally.away is None:
             return False
         kept, sample = lasting.aged(self.state, kept, stamp), self._about(reading)
-        verdict = lasting.judged(self.state, kept, sample)
+        if lasting.says_nothing(measurement.reading(reading.sample), kept, sample):
+            verdict, kept = Verdict.NOTHING, kept._replace(returns=True)
+        else:
+            verdict, kept = lasting.judged(self.state, kept, sample)
         if verdict is Verdict.BACK:
             self._stop_following()
             self.tallies[name] = tally._replace(away=tally.away.back(sample.residual))
             return False
         if verdict is Verdict.GONE:
             self._stop_following()
-            self._lasting = self._jumped(reading, CHANCES)
+            self._lasting = self._jumped(reading)._replace(returns=kept.returns)
         else:
-            lasting.correct_by_changes(self.state, sample)
-            self._lasting = kept._replace(chances=max(kept.chances - 1, 0))
+            if verdict is Verdict.ON:
+                lasting.correct_by_changes(self.state, sample)
+            self._lasting = kept
         self._reject(reading, self._gates[name].rejected(tally, stamp, self.state.innovation, tally.away))
         return True
 

@@ -37,17 +37,23 @@ from uvms_observer.navigation.target import (
     with_target,
 )
 from uvms_observer.navigation.trust.innovation_gate import (
-    CHANCES,
     FAR,
+    FEW,
     JUMP,
     READMITTED,
     RETURNED,
-    WORN,
     quantile,
 )
 
 LEAST = 1.0 / 3.0
-"""Part of the first jump by which a sensor jumps back at least."""
+"""Part of what it is off by now by which a sensor jumps back at least."""
+AGAIN = 2
+"""Samples that must agree after such a jump."""
+REST = 4.0
+"""Standard deviations of its noise within which a sensor reads zero."""
+KNOWN = 10.0
+"""Standard deviations of the estimate in the first jump, from which on agreeing says something: a
+lie of that size is as near by chance once in a thousand times."""
 AXES = 3
 """Dimension of a measurement whose offset is carried."""
 PLACE = slice(-POSE, -POSE + AXES)
@@ -63,7 +69,9 @@ class Lasting(NamedTuple):
     attitude: Array  # (4,) of the vehicle at the jump
     turned: float  # rad, greatest angle from there so far
     stamp: int  # ns, of its last sample
-    chances: int = 0  # samples left, after a further jump, among which it may agree
+    returns: bool = False  # whether it has jumped to where it agrees
+    agreeing: int = 0  # samples in a row since then, or with a well known estimate
+    added: float = 0.0  # variance by which the offset has become uncertain since the last sample
 
 
 class Verdict(Enum):
@@ -72,6 +80,7 @@ class Verdict(Enum):
     BACK = "it is right again"
     GONE = "it has jumped to something else"
     ON = "it goes on as before"
+    NOTHING = "it reads the same whatever the vehicle does"
 
 
 def has_room(state: NavigationState) -> bool:
@@ -111,8 +120,9 @@ def aged(state: NavigationState, kept: Lasting, stamp: int) -> Lasting:
     state.cross[OWN] *= phi
     state.target_covariance[OWN] *= phi
     state.target_covariance[:, OWN] *= phi
-    state.target_covariance[OWN, OWN] += (1.0 - phi**2) * kept.by**2 * np.eye(AXES)
-    return kept._replace(turned=turned, stamp=stamp)
+    added = (1.0 - phi**2) * kept.by**2
+    state.target_covariance[OWN, OWN] += added * np.eye(AXES)
+    return kept._replace(turned=turned, stamp=stamp, added=added)
 
 
 def _angle(before: Array, after: Array) -> float:
@@ -154,23 +164,35 @@ def _jointly(state: NavigationState, H: Array) -> tuple[Array, Array]:
     return np.hstack([H, more]), P
 
 
-def judged(state: NavigationState, kept: Lasting, sample: Linear) -> Verdict:
-    """Whether the sensor is right again, from a sample before it is used.
+def judged(state: NavigationState, kept: Lasting, sample: Linear) -> tuple[Verdict, Lasting]:
+    """Whether the sensor is right again, from a sample before it is used; what is kept after it.
 
-    It is where it has jumped, and now agrees; or where it agrees though the estimate is known so
-    well that it would not if it were off by what it jumped by.
+    It is where it has jumped to where it agrees, and stays there; or where it goes on agreeing
+    though the estimate is known so much better than what it jumped by that it would not if it were
+    off. A jump is more than noise, whatever the offset may have done meanwhile.
     """
     change, spread = expected(state, sample)
     own = sample.H @ state.covariance @ sample.H.T + sample.N
     distance = _squared(sample.residual, own)
-    jumped = _squared(change, spread) > FAR * _limit(JUMP)
-    back = jumped and bool(np.linalg.norm(change) > LEAST * kept.by)
-    if (back or kept.chances > 0) and distance <= _limit(RETURNED):
-        return Verdict.BACK
-    is_known = bool(WORN**2 * own.diagonal().max() < kept.by**2)
-    if is_known and distance <= _limit(READMITTED):
-        return Verdict.BACK
-    return Verdict.GONE if jumped else Verdict.ON
+    if _squared(change, spread - kept.added * np.eye(AXES)) > FAR * _limit(JUMP):
+        far = np.linalg.norm(change) > LEAST * np.linalg.norm(state.target[PLACE])
+        return Verdict.GONE, kept._replace(returns=bool(far) and distance <= _limit(RETURNED))
+    is_known = bool(KNOWN**2 * own.diagonal().max() < kept.by**2)
+    limit, needed = (RETURNED, AGAIN) if kept.returns else (READMITTED, FEW)
+    agrees = (kept.returns or is_known) and distance <= _limit(limit)
+    after = kept._replace(
+        returns=kept.returns and agrees, agreeing=kept.agreeing + 1 if agrees else 0
+    )
+    return (Verdict.BACK if after.agreeing >= needed else Verdict.ON), after
+
+
+def says_nothing(values: Array, kept: Lasting, sample: Linear) -> bool:
+    """Whether a sensor that has jumped reads zero, within noise.
+
+    Such a DVL looks at what moves with the vehicle, whatever that does.
+    """
+    noise = REST * np.sqrt(sample.N.diagonal())
+    return bool((np.abs(values) < noise).all()) and kept.by > float(np.linalg.norm(noise))
 
 
 @cache
