@@ -40,9 +40,15 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.trust import consistency, lasting, undecided
+from uvms_observer.navigation.trust import (
+    consistency,
+    following,
+    lasting,
+    top_speed,
+    undecided,
+)
 from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
-from uvms_observer.navigation.trust.lasting import Lasting, Verdict
+from uvms_observer.navigation.trust.lasting import Lasting
 from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
@@ -85,6 +91,8 @@ class Estimator:
         self.tallies = dict.fromkeys(measurements, Tally())
         self._doubts: dict[str, Doubt] = {}  # of the sensors whose last sample was rejected
         self._lasting: Lasting | None = None  # a sensor that has jumped, whose changes are used
+        self._speed: Lasting | None = None  # where no sensor tells the velocity
+        self._bounded = 0  # ns, when that was last used
         self._alike: dict[str, tuple[Array, int]] = {}  # last reading, and how often it came
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
@@ -131,10 +139,11 @@ class Estimator:
             if inertial:
                 self._align(reading.sample)
         elif inertial:
-            if not self._take_at_once(reading):
+            at_once = self._take_at_once(reading)
+            if not at_once:
                 self._carry(reading.sample)
-                if not self._measurements[reading.name].usable(reading.sample):
-                    return
+            self._bound_speed()
+            if not at_once and self._measurements[reading.name].usable(reading.sample):
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
@@ -291,7 +300,7 @@ class Estimator:
         self.tallies = {
             name: Tally(tally.accepted, tally.gated) for name, tally in self.tallies.items()
         }
-        self._doubts, self._lasting = {}, None
+        self._doubts, self._lasting, self._speed = {}, None, None
         if self._sample is not None:
             self._align(self._sample)
             self.advance(now)
@@ -325,7 +334,7 @@ class Estimator:
     def _correct(self, reading: Reading) -> None:
         name = reading.name
         if self._is_stuck(reading):
-            self.tallies[name] = self._gates[name].refused(self.tallies[name], reading.stamp)
+            self._refuse(reading)
             return
         if self._lasting is not None and self._lasting.name == name and self._follow(reading):
             return
@@ -350,24 +359,24 @@ class Estimator:
         if name in self._alike and np.array_equal(self._alike[name][0], values):
             count += self._alike[name][1]
         self._alike[name] = values, count
-        is_stuck = count > measurement.most_alike
-        if is_stuck and self._lasting is not None and self._lasting.name == name:
-            self._lasting = self._lasting._replace(returns=True)  # the next other one is a jump
-        return is_stuck
+        return count > measurement.most_alike
+
+    def _refuse(self, reading: Reading) -> None:
+        """Count a sample that is no measurement."""
+        name, kept = reading.name, self._lasting
+        self.tallies[name] = self._gates[name].refused(self.tallies[name], reading.stamp)
+        if kept is not None and kept.name == name:
+            self.state, self._lasting = following.silent(self.state, kept)
 
     def _begin_to_follow(self, reading: Reading) -> None:
         """After a sample that was rejected: if the sensor has just jumped, use its changes."""
-        tally, measurement = self.tallies[reading.name], self._measurements[reading.name]
+        name, tally = reading.name, self.tallies[reading.name]
         is_new = tally.row == 1 and tally.away is not None and tally.used is not None
-        if is_new and measurement.follows and not self._lasting and lasting.has_room(self.state):
-            self._lasting = self._jumped(reading)
-
-    def _jumped(self, reading: Reading) -> Lasting:
-        """What is kept of a sensor that has jumped with this sample."""
-        sample = self._about(reading)
-        self.state = lasting.with_offset(self.state, sample)
-        by, attitude = float(np.linalg.norm(sample.residual)), self.state.quaternion.copy()
-        return Lasting(reading.name, by, attitude, 0.0, reading.stamp)
+        if is_new and self._measurements[name].follows and self._lasting is None:
+            self._leave_speed()
+            if lasting.has_room(self.state):
+                about = self._about(reading)
+                self.state, self._lasting = following.begun(self.state, name, about, reading.stamp)
 
     def _about(self, reading: Reading) -> Linear:
         return self._measurements[reading.name].about(self.state, reading.sample, self._now[0])
@@ -378,31 +387,37 @@ class Estimator:
         It still counts as rejected: the sensor is off.
         """
         name, stamp, kept = reading.name, reading.stamp, self._lasting
-        tally, measurement = self.tallies[name], self._measurements[name]
+        tally, gate, measurement = self.tallies[name], self._gates[name], self._measurements[name]
         if kept is None or tally.away is None:
             return False
-        kept, sample = lasting.aged(self.state, kept, stamp), self._about(reading)
-        if lasting.says_nothing(measurement.reading(reading.sample), kept, sample):
-            verdict, kept = Verdict.NOTHING, kept._replace(returns=True)
+        values, about = measurement.reading(reading.sample), self._about(reading)
+        if following.says_nothing(values, kept, about, self._imu.speed):
+            self.state, self._lasting = following.silent(self.state, kept)
         else:
-            verdict, kept = lasting.judged(self.state, kept, sample)
-        if verdict is Verdict.BACK:
-            self._stop_following()
-            self.tallies[name] = tally._replace(away=tally.away.back(sample.residual))
+            if not kept.carried:
+                self._leave_speed()
+            self.state, self._lasting = following.followed(self.state, kept, about, stamp)
+        if self._lasting is None:
+            self.tallies[name] = tally._replace(away=tally.away.back(about.residual))
             return False
-        if verdict is Verdict.GONE:
-            self._stop_following()
-            self._lasting = self._jumped(reading)._replace(returns=kept.returns)
-        else:
-            if verdict is Verdict.ON:
-                lasting.correct_by_changes(self.state, sample)
-            self._lasting = kept
-        self._reject(reading, self._gates[name].rejected(tally, stamp, self.state.innovation, tally.away))
+        innovation = self.state.innovation
+        self._reject(reading, gate.rejected(tally, stamp, innovation, tally.away))
         return True
 
     def _stop_following(self) -> None:
-        if self._lasting is not None:
-            self.state, self._lasting = lasting.without_offset(self.state), None
+        self.state, self._lasting = following.stopped(self.state, self._lasting), None
+
+    def _leave_speed(self) -> None:
+        """There is room for one offset only, and a sensor tells more than the vehicle's speed."""
+        self.state, self._speed = following.stopped(self.state, self._speed), None
+
+    def _bound_speed(self) -> None:
+        """Where no sensor tells the velocity, it is that of a vehicle."""
+        time, kept = self.time or 0, self._lasting
+        if time - self._bounded < top_speed.EVERY or (kept is not None and kept.carried):
+            return
+        self._bounded = time
+        self.state, self._speed = top_speed.bounded(self.state, self._speed, self._imu.speed, time)
 
     def _reject(self, reading: Reading, tally: Tally) -> None:
         """Keep the tally of a sample that is not used, and what it would have changed."""

@@ -49,8 +49,6 @@ LEAST = 1.0 / 3.0
 """Part of what it is off by now by which a sensor jumps back at least."""
 AGAIN = 2
 """Samples that must agree after such a jump."""
-REST = 4.0
-"""Standard deviations of its noise within which a sensor reads zero."""
 KNOWN = 10.0
 """Standard deviations of the estimate in the first jump, from which on agreeing says something: a
 lie of that size is as near by chance once in a thousand times."""
@@ -62,16 +60,18 @@ NO_TURN = np.array([0.0, 0.0, 0.0, 1.0])
 
 
 class Lasting(NamedTuple):
-    """A sensor that is off, and what is kept of it."""
+    """What is kept of an offset."""
 
-    name: str
-    by: float  # size of the jump, in the unit of the measurement
+    name: str  # of the sensor that is off
+    by: float  # size of the jump, in the unit of the measurement; std of the offset in the end
     attitude: Array  # (4,) of the vehicle at the jump
-    turned: float  # rad, greatest angle from there so far
     stamp: int  # ns, of its last sample
+    turned: float = 0.0  # rad, greatest angle from that attitude so far
+    lasts: float = LASTING_S  # s
+    added: float = 0.0  # variance by which the offset has become uncertain since the last sample
+    carried: bool = True  # whether it is part of the state: not where the sensor says nothing
     returns: bool = False  # whether it has jumped to where it agrees
     agreeing: int = 0  # samples in a row since then, or with a well known estimate
-    added: float = 0.0  # variance by which the offset has become uncertain since the last sample
 
 
 class Verdict(Enum):
@@ -80,7 +80,6 @@ class Verdict(Enum):
     BACK = "it is right again"
     GONE = "it has jumped to something else"
     ON = "it goes on as before"
-    NOTHING = "it reads the same whatever the vehicle does"
 
 
 def has_room(state: NavigationState) -> bool:
@@ -114,7 +113,7 @@ def without_offset(state: NavigationState) -> NavigationState:
 def aged(state: NavigationState, kept: Lasting, stamp: int) -> Lasting:
     """Carry the offset to the stamp (ns), in place."""
     turned = max(kept.turned, _angle(kept.attitude, state.quaternion))
-    gone = 1e-9 * (stamp - kept.stamp) / LASTING_S + 0.5 * (turned**2 - kept.turned**2)
+    gone = 1e-9 * (stamp - kept.stamp) / kept.lasts + 0.5 * (turned**2 - kept.turned**2)
     phi = float(np.exp(-gone))
     state.target[PLACE] *= phi
     state.cross[OWN] *= phi
@@ -172,27 +171,29 @@ def judged(state: NavigationState, kept: Lasting, sample: Linear) -> tuple[Verdi
     off. A jump is more than noise, whatever the offset may have done meanwhile.
     """
     change, spread = expected(state, sample)
-    own = sample.H @ state.covariance @ sample.H.T + sample.N
+    own = own_covariance(state, sample)
     distance = _squared(sample.residual, own)
     if _squared(change, spread - kept.added * np.eye(AXES)) > FAR * _limit(JUMP):
         far = np.linalg.norm(change) > LEAST * np.linalg.norm(state.target[PLACE])
         return Verdict.GONE, kept._replace(returns=bool(far) and distance <= _limit(RETURNED))
     is_known = bool(KNOWN**2 * own.diagonal().max() < kept.by**2)
     limit, needed = (RETURNED, AGAIN) if kept.returns else (READMITTED, FEW)
-    agrees = (kept.returns or is_known) and distance <= _limit(limit)
+    is_good = (kept.returns or is_known) and distance <= _limit(limit)
     after = kept._replace(
-        returns=kept.returns and agrees, agreeing=kept.agreeing + 1 if agrees else 0
+        returns=kept.returns and is_good, agreeing=kept.agreeing + 1 if is_good else 0
     )
     return (Verdict.BACK if after.agreeing >= needed else Verdict.ON), after
 
 
-def says_nothing(values: Array, kept: Lasting, sample: Linear) -> bool:
-    """Whether a sensor that has jumped reads zero, within noise.
+def agrees(state: NavigationState, sample: Linear) -> bool:
+    """Whether a sample may be right by itself."""
+    return _squared(sample.residual, own_covariance(state, sample)) <= _limit(RETURNED)
 
-    Such a DVL looks at what moves with the vehicle, whatever that does.
-    """
-    noise = REST * np.sqrt(sample.N.diagonal())
-    return bool((np.abs(values) < noise).all()) and kept.by > float(np.linalg.norm(noise))
+
+def own_covariance(state: NavigationState, sample: Linear) -> Array:
+    """Covariance (3, 3) of the residual of a sample that is right."""
+    S: Array = sample.H @ state.covariance @ sample.H.T + sample.N
+    return S
 
 
 @cache
