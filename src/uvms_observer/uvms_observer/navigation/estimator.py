@@ -376,7 +376,10 @@ class Estimator:
             self._leave_speed()
             if lasting.has_room(self.state):
                 about = self._about(reading)
-                self.state, self._lasting = following.begun(self.state, name, about, reading.stamp)
+                values = self._measurements[name].reading(reading.sample)
+                self.state, self._lasting = following.begun(
+                    self.state, name, about, values, reading.stamp
+                )
 
     def _about(self, reading: Reading) -> Linear:
         return self._measurements[reading.name].about(self.state, reading.sample, self._now[0])
@@ -396,7 +399,7 @@ class Estimator:
         else:
             if not kept.carried:
                 self._leave_speed()
-            self.state, self._lasting = following.followed(self.state, kept, about, stamp)
+            self.state, self._lasting = following.followed(self.state, kept, about, values, stamp)
         if self._lasting is None:
             self.tallies[name] = tally._replace(away=tally.away.back(about.residual))
             return False

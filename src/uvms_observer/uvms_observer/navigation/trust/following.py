@@ -28,10 +28,13 @@ class Following(NamedTuple):
     kept: Lasting | None
 
 
-def begun(state: NavigationState, name: str, sample: Linear, stamp: int) -> Following:
-    """After a jump at `stamp`, ns."""
+def begun(
+    state: NavigationState, name: str, sample: Linear, values: Array, stamp: int
+) -> tuple[NavigationState, Lasting]:
+    """After a jump at `stamp`, ns, to these values (3,)."""
     by, attitude = float(np.linalg.norm(sample.residual)), state.quaternion.copy()
-    return Following(lasting.with_offset(state, sample), Lasting(name, by, attitude, stamp))
+    kept = Lasting(name, by, attitude, stamp, rests=_is_zero(values, sample))
+    return lasting.with_offset(state, sample), kept
 
 
 def stopped(state: NavigationState, kept: Lasting | None) -> NavigationState:
@@ -44,25 +47,38 @@ def silent(state: NavigationState, kept: Lasting) -> Following:
     return Following(stopped(state, kept), kept._replace(carried=False, returns=False))
 
 
-def followed(state: NavigationState, kept: Lasting, sample: Linear, stamp: int) -> Following:
-    """After a further sample of this sensor at `stamp`, ns, that says something."""
+def followed(
+    state: NavigationState, kept: Lasting, sample: Linear, values: Array, stamp: int
+) -> Following:
+    """After a further sample of this sensor at `stamp`, ns, with these values (3,)."""
     if not kept.carried:  # what it does now it has just begun to do
-        new = begun(state, kept.name, sample, stamp)
-        agrees = lasting.agrees(state, sample)
-        return Following(new.state, new.kept and new.kept._replace(returns=agrees))
+        return _returning(state, kept, sample, values, stamp, lasting.agrees(state, sample))
     kept = lasting.aged(state, kept, stamp)
     verdict, kept = lasting.judged(state, kept, sample)
     if verdict is Verdict.BACK:
         return Following(stopped(state, kept), None)
     if verdict is Verdict.GONE:
-        new = begun(stopped(state, kept), kept.name, sample, stamp)
-        return Following(new.state, new.kept and new.kept._replace(returns=kept.returns))
+        alone = stopped(state, kept)
+        return _returning(alone, kept, sample, values, stamp, kept.returns)
     lasting.correct_by_changes(state, sample)
     return Following(state, kept)
 
 
+def _returning(
+    state: NavigationState,
+    kept: Lasting,
+    sample: Linear,
+    values: Array,
+    stamp: int,
+    returns: bool,
+) -> Following:
+    """After a further jump, back to where it is right or to something else."""
+    state, new = begun(state, kept.name, sample, values, stamp)
+    return Following(state, new._replace(returns=returns, rests=new.rests and not returns))
+
+
 def says_nothing(values: Array, kept: Lasting, sample: Linear, speed: float) -> bool:
-    """Whether a sensor that has jumped reads zero, within noise, or beyond what a vehicle does.
+    """Whether a sensor that has jumped reads zero since then, or beyond what a vehicle does.
 
     A DVL that reads zero looks at what moves with the vehicle, whatever that does.
 
@@ -71,6 +87,10 @@ def says_nothing(values: Array, kept: Lasting, sample: Linear, speed: float) -> 
         kept, sample: of it.
         speed: std of what the vehicle can do, in the unit of the measurement.
     """
+    rests = kept.rests and _is_zero(values, sample)
+    return rests or float(np.linalg.norm(sample.residual)) > MOST * speed
+
+
+def _is_zero(values: Array, sample: Linear) -> bool:
     noise = REST * np.sqrt(sample.N.diagonal())
-    at_rest = bool((np.abs(values) < noise).all()) and kept.by > float(np.linalg.norm(noise))
-    return at_rest or float(np.linalg.norm(sample.residual)) > MOST * speed
+    return bool((np.abs(values) < noise).all())

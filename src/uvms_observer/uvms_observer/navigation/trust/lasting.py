@@ -70,6 +70,7 @@ class Lasting(NamedTuple):
     lasts: float = LASTING_S  # s
     added: float = 0.0  # variance by which the offset has become uncertain since the last sample
     carried: bool = True  # whether it is part of the state: not where the sensor says nothing
+    rests: bool = False  # whether it has read zero since the jump
     returns: bool = False  # whether it has jumped to where it agrees
     agreeing: int = 0  # samples in a row since then, or with a well known estimate
 
