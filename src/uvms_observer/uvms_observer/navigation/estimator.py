@@ -322,6 +322,11 @@ class Estimator:
         P = self.state.covariance
         P[POSITION, POSITION] += np.diag(np.square([LOST_M, LOST_M, LOST_DEPTH_M]))
 
+    def misfit_of(self, name: str) -> float:
+        """How badly it fits that a sensor is off, by its changes: 0 on average where it is."""
+        kept = self._lasting
+        return kept.misfit if kept is not None and kept.name == name else np.inf
+
     def size_of(self, name: str) -> int:
         """Dimension of a sensor's measurement."""
         return self._measurements[name].size

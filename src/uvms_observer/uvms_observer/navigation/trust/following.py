@@ -74,7 +74,8 @@ def _returning(
 ) -> Following:
     """After a further jump, back to where it is right or to something else."""
     state, new = begun(state, kept.name, sample, values, stamp)
-    return Following(state, new._replace(returns=returns, rests=new.rests and not returns))
+    rests = new.rests and not returns
+    return Following(state, new._replace(returns=returns, rests=rests, misfit=kept.misfit))
 
 
 def says_nothing(values: Array, kept: Lasting, sample: Linear, speed: float) -> bool:

@@ -73,6 +73,7 @@ class Lasting(NamedTuple):
     rests: bool = False  # whether it has read zero since the jump
     returns: bool = False  # whether it has jumped to where it agrees
     agreeing: int = 0  # samples in a row since then, or with a well known estimate
+    misfit: float = 0.0  # sum of the squared distances of its changes, less their dimension
 
 
 class Verdict(Enum):
@@ -174,6 +175,7 @@ def judged(state: NavigationState, kept: Lasting, sample: Linear) -> tuple[Verdi
     change, spread = expected(state, sample)
     own = own_covariance(state, sample)
     distance = _squared(sample.residual, own)
+    kept = kept._replace(misfit=kept.misfit + _squared(change, spread) - AXES)
     if _squared(change, spread - kept.added * np.eye(AXES)) > FAR * _limit(JUMP):
         far = np.linalg.norm(change) > LEAST * np.linalg.norm(state.target[PLACE])
         return Verdict.GONE, kept._replace(returns=bool(far) and distance <= _limit(RETURNED))
