@@ -37,7 +37,6 @@ from uvms_observer.navigation.target import (
     with_target,
 )
 from uvms_observer.navigation.trust.innovation_gate import (
-    FAR,
     FEW,
     JUMP,
     READMITTED,
@@ -176,7 +175,7 @@ def judged(state: NavigationState, kept: Lasting, sample: Linear) -> tuple[Verdi
     own = own_covariance(state, sample)
     distance = _squared(sample.residual, own)
     kept = kept._replace(misfit=kept.misfit + _squared(change, spread) - AXES)
-    if _squared(change, spread - kept.added * np.eye(AXES)) > FAR * _limit(JUMP):
+    if _squared(change, spread - kept.added * np.eye(AXES)) > _limit(JUMP):
         far = np.linalg.norm(change) > LEAST * np.linalg.norm(state.target[PLACE])
         return Verdict.GONE, kept._replace(returns=bool(far) and distance <= _limit(RETURNED))
     is_known = bool(KNOWN**2 * own.diagonal().max() < kept.by**2)
