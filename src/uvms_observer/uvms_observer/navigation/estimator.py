@@ -13,9 +13,9 @@ from uvms_observer.navigation.begin.alignment import aligned, levelled
 from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
 from uvms_observer.navigation.inertial.at_once import UNUSUAL, take_inertial
 from uvms_observer.navigation.inertial.installation import Installation
+from uvms_observer.navigation.inertial.made_up import make_up_for
 from uvms_observer.navigation.inertial.screen import (
     ImuScreen,
-    Jump,
     ScreenMemory,
     Trend,
     remember,
@@ -23,7 +23,6 @@ from uvms_observer.navigation.inertial.screen import (
 )
 from uvms_observer.navigation.inertial.unknown_motion import (
     GAP,
-    change_velocity,
     gap_spread,
     spread,
 )
@@ -40,24 +39,13 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.trust import (
-    consistency,
-    following,
-    lasting,
-    top_speed,
-    undecided,
-)
+from uvms_observer.navigation.trust import consistency, offsets, undecided
 from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
-from uvms_observer.navigation.trust.lasting import Lasting
+from uvms_observer.navigation.trust.offsets import Offsets
+from uvms_observer.navigation.trust.stuck import Repeated, repeated
 from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
-MOST = np.repeat([np.radians(1.0), 0.1], 3)
-"""Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
-vehicle that was pushed."""
-KNOCK_M = 0.02
-"""Change of velocity by a knock that falls between two readings, m/s, for each rad/s by which the
-rate has changed: the arm about which it turns the unit, less what the readings have of it."""
 SETTLED = to_nanoseconds(1.0)
 """After an unusual reading of the inertial unit, before the estimate is itself again."""
 
@@ -90,10 +78,8 @@ class Estimator:
         }
         self.tallies = dict.fromkeys(measurements, Tally())
         self._doubts: dict[str, Doubt] = {}  # of the sensors whose last sample was rejected
-        self._lasting: Lasting | None = None  # a sensor that has jumped, whose changes are used
-        self._speed: Lasting | None = None  # where no sensor tells the velocity
-        self._bounded = 0  # ns, when that was last used
-        self._alike: dict[str, tuple[Array, int]] = {}  # last reading, and how often it came
+        self._offsets = Offsets()
+        self._alike: dict[str, Repeated] = {}  # last readings
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
@@ -142,7 +128,9 @@ class Estimator:
             at_once = self._take_at_once(reading)
             if not at_once:
                 self._carry(reading.sample)
-            self._bound_speed()
+            self.state, self._offsets = offsets.bound_speed(
+                self.state, self._offsets, self._imu.speed, self.time
+            )
             if not at_once and self._measurements[reading.name].usable(reading.sample):
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
@@ -244,17 +232,7 @@ class Estimator:
         if screened.turn is not None and screened.change is not None:
             spread(tuple(self.state), screened.turn, screened.change, dt)
         if screened.jump is not None:
-            self._make_up_for(screened.jump, dt)
-
-    def _make_up_for(self, jump: Jump, dt: float) -> None:
-        """What readings that were held back would have changed, and what they do not say."""
-        change_velocity(tuple(self.state), jump.owed)
-        unseen = KNOCK_M * float(np.linalg.norm(jump.rate))
-        spread(tuple(self.state), np.zeros(3), np.full(3, unseen), dt)
-        if jump.stays:
-            step = np.concatenate((jump.rate, jump.force))
-            doubt = np.square(np.clip(step, -MOST, MOST))
-            self.state.covariance[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(doubt)
+            make_up_for(self.state, screened.jump, dt)
 
     def _trend(self) -> Trend:
         """The last reading that is believed, and how fast it changes."""
@@ -300,7 +278,7 @@ class Estimator:
         self.tallies = {
             name: Tally(tally.accepted, tally.gated) for name, tally in self.tallies.items()
         }
-        self._doubts, self._lasting, self._speed = {}, None, None
+        self._doubts, self._offsets = {}, Offsets()
         if self._sample is not None:
             self._align(self._sample)
             self.advance(now)
@@ -324,8 +302,8 @@ class Estimator:
 
     def misfit_of(self, name: str) -> float:
         """How badly it fits that a sensor is off, by its changes: 0 on average where it is."""
-        kept = self._lasting
-        return kept.misfit if kept is not None and kept.name == name else np.inf
+        kept = self._offsets.of(name)
+        return np.inf if kept is None else kept.misfit
 
     def size_of(self, name: str) -> int:
         """Dimension of a sensor's measurement."""
@@ -338,10 +316,7 @@ class Estimator:
 
     def _correct(self, reading: Reading) -> None:
         name = reading.name
-        if self._is_stuck(reading):
-            self._refuse(reading)
-            return
-        if self._lasting is not None and self._lasting.name == name and self._follow(reading):
+        if self._is_stuck(reading) or self._follow(reading):
             return
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._now[0])
@@ -356,76 +331,51 @@ class Estimator:
             self._doubts.pop(name, None)
 
     def _is_stuck(self, reading: Reading) -> bool:
-        """Whether the sensor has read the same to the last bit too often to be a measurement."""
+        """Whether the sensor has read the same to the last bit too often; such a sample counts."""
         name, measurement = reading.name, self._measurements[reading.name]
         if measurement.most_alike is None:
             return False
-        values, count = measurement.reading(reading.sample), 1
-        if name in self._alike and np.array_equal(self._alike[name][0], values):
-            count += self._alike[name][1]
-        self._alike[name] = values, count
-        return count > measurement.most_alike
-
-    def _refuse(self, reading: Reading) -> None:
-        """Count a sample that is no measurement."""
-        name, kept = reading.name, self._lasting
+        values = measurement.reading(reading.sample)
+        self._alike[name] = repeated(self._alike.get(name), values)
+        if self._alike[name].times <= measurement.most_alike:
+            return False
         self.tallies[name] = self._gates[name].refused(self.tallies[name], reading.stamp)
-        if kept is not None and kept.name == name:
-            self.state, self._lasting = following.silent(self.state, kept)
+        if self._offsets.of(name):
+            self.state, self._offsets = offsets.silence(self.state, self._offsets)
+        return True
 
     def _begin_to_follow(self, reading: Reading) -> None:
         """After a sample that was rejected: if the sensor has just jumped, use its changes."""
         name, tally = reading.name, self.tallies[reading.name]
+        sensor = self._measurements[name]
         is_new = tally.row == 1 and tally.away is not None and tally.used is not None
-        if is_new and self._measurements[name].follows and self._lasting is None:
-            self._leave_speed()
-            if lasting.has_room(self.state):
-                about = self._about(reading)
-                values = self._measurements[name].reading(reading.sample)
-                self.state, self._lasting = following.begun(
-                    self.state, name, about, values, reading.stamp
-                )
-
-    def _about(self, reading: Reading) -> Linear:
-        return self._measurements[reading.name].about(self.state, reading.sample, self._now[0])
+        if is_new and sensor.follows:
+            about, values = self._about(reading), sensor.reading(reading.sample)
+            self.state, self._offsets = offsets.begin(
+                self.state, self._offsets, name, about, values, reading.stamp
+            )
 
     def _follow(self, reading: Reading) -> bool:
         """Use a sample of a sensor that has jumped by its changes; False where it is right again.
 
         It still counts as rejected: the sensor is off.
         """
-        name, stamp, kept = reading.name, reading.stamp, self._lasting
-        tally, gate, measurement = self.tallies[name], self._gates[name], self._measurements[name]
-        if kept is None or tally.away is None:
+        name, stamp, tally = reading.name, reading.stamp, self.tallies[reading.name]
+        if tally.away is None or not self._offsets.of(name):
             return False
-        values, about = measurement.reading(reading.sample), self._about(reading)
-        if following.says_nothing(values, kept, about, self._imu.speed):
-            self.state, self._lasting = following.silent(self.state, kept)
-        else:
-            if not kept.carried:
-                self._leave_speed()
-            self.state, self._lasting = following.followed(self.state, kept, about, values, stamp)
-        if self._lasting is None:
+        about, values = self._about(reading), self._measurements[name].reading(reading.sample)
+        self.state, self._offsets = offsets.follow(
+            self.state, self._offsets, about, values, stamp, self._imu.speed
+        )
+        if self._offsets.sensor is None:
             self.tallies[name] = tally._replace(away=tally.away.back(about.residual))
             return False
         innovation = self.state.innovation
-        self._reject(reading, gate.rejected(tally, stamp, innovation, tally.away))
+        self._reject(reading, self._gates[name].rejected(tally, stamp, innovation, tally.away))
         return True
 
-    def _stop_following(self) -> None:
-        self.state, self._lasting = following.stopped(self.state, self._lasting), None
-
-    def _leave_speed(self) -> None:
-        """There is room for one offset only, and a sensor tells more than the vehicle's speed."""
-        self.state, self._speed = following.stopped(self.state, self._speed), None
-
-    def _bound_speed(self) -> None:
-        """Where no sensor tells the velocity, it is that of a vehicle."""
-        time, kept = self.time or 0, self._lasting
-        if time - self._bounded < top_speed.EVERY or (kept is not None and kept.carried):
-            return
-        self._bounded = time
-        self.state, self._speed = top_speed.bounded(self.state, self._speed, self._imu.speed, time)
+    def _about(self, reading: Reading) -> Linear:
+        return self._measurements[reading.name].about(self.state, reading.sample, self._now[0])
 
     def _reject(self, reading: Reading, tally: Tally) -> None:
         """Keep the tally of a sample that is not used, and what it would have changed."""
@@ -449,5 +399,5 @@ class Estimator:
         """Let these sensors come back where they agree, without a jump back."""
         for name in tuple(names):
             self.tallies[name] = self.tallies[name]._replace(away=None)
-            if self._lasting is not None and self._lasting.name == name:
-                self._stop_following()
+            if self._offsets.of(name):
+                self.state, self._offsets = offsets.stop(self.state, self._offsets)
