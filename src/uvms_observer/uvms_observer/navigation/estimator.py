@@ -42,7 +42,7 @@ from uvms_observer.navigation.state import (
 from uvms_observer.navigation.trust import consistency, offsets, undecided
 from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
 from uvms_observer.navigation.trust.offsets import Offsets
-from uvms_observer.navigation.trust.stuck import Repeated, repeated
+from uvms_observer.navigation.trust.stuck import Repeated, is_stuck
 from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
@@ -332,12 +332,8 @@ class Estimator:
 
     def _is_stuck(self, reading: Reading) -> bool:
         """Whether the sensor has read the same to the last bit too often; such a sample counts."""
-        name, measurement = reading.name, self._measurements[reading.name]
-        if measurement.most_alike is None:
-            return False
-        values = measurement.reading(reading.sample)
-        self._alike[name] = repeated(self._alike.get(name), values)
-        if self._alike[name].times <= measurement.most_alike:
+        name = reading.name
+        if not is_stuck(self._alike, name, self._measurements[name], reading.sample):
             return False
         self.tallies[name] = self._gates[name].refused(self.tallies[name], reading.stamp)
         if self._offsets.of(name):
