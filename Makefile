@@ -12,6 +12,8 @@ CODE := src bringup tests tools $(wildcard benchmarks examples)
 # A sourced ROS workspace or another environment must not leak into this one.
 unexport PYTHONPATH PYTHONHOME AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH
 unexport _ROS_WHEELS_BOOTSTRAP_COMPLETE
+# Container images often forbid it: then each of a run's processes compiles 1,400 files again.
+unexport PYTHONDONTWRITEBYTECODE
 
 .DEFAULT_GOAL := help
 .PHONY: help setup setup-run run test bench field faults docs figures pictures lint format clean

@@ -72,7 +72,8 @@ def test_a_path_that_the_terminal_cannot_print(run, tmp_path, saw, environment):
         cwd=tmp_path, environment=environment,
     )  # fmt: skip
     assert simulated.returncode == 0, simulated.stderr
-    assert "Traceback" not in simulated.stderr and "error" not in simulated.stderr
+    assert "Traceback" not in simulated.stderr
+    assert "error" not in simulated.stderr
     assert (target / "run.mcap").is_file()
     refused = uvms("report", str(tmp_path / "größe.mcap"), cwd=tmp_path, environment=environment)
     assert refused.returncode == 2

@@ -11,10 +11,12 @@ from collections import deque
 
 from machine import SetupError
 
-# Set by a sourced ROS workspace or another environment; they would mix two installations.
+# Set by a sourced ROS workspace or another environment; they would mix two installations. Container
+# images often forbid bytecode: then each process of a run compiles 1,400 files again.
 FOREIGN = (
     "AMENT_PREFIX_PATH CMAKE_PREFIX_PATH COLCON_PREFIX_PATH LD_LIBRARY_PATH PYTHONHOME PYTHONPATH "
-    "PIP_PREFIX PIP_TARGET PIP_USER PIP_REQUIREMENT PIP_CONSTRAINT _ROS_WHEELS_BOOTSTRAP_COMPLETE"
+    "PIP_PREFIX PIP_TARGET PIP_USER PIP_REQUIREMENT PIP_CONSTRAINT _ROS_WHEELS_BOOTSTRAP_COMPLETE "
+    "PYTHONDONTWRITEBYTECODE"
 ).split()
 
 NO_NETWORK = re.compile(

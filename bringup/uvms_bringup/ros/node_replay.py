@@ -2,11 +2,10 @@
 
 import os
 import time
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
-from rclpy.action import ActionClient
 from rclpy.task import Future
 from std_srvs.srv import Trigger
 
@@ -14,12 +13,12 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.log.compare import compare, table
 from uvms_analysis.log.read import RUN, RunLog
 from uvms_analysis.log.writer import LogWriter
-from uvms_bringup.agenda import in_turn
 from uvms_bringup.claim import Holder
 from uvms_bringup.errors import RunError, ScenarioError
 from uvms_bringup.pace import Pace
 from uvms_bringup.progress import ProgressLine
 from uvms_bringup.ros.domain import claim_domain
+from uvms_bringup.ros.goals_again import GoalsAgain
 from uvms_bringup.ros.input_player import InputPlayer
 from uvms_bringup.ros.metronome import Metronome
 from uvms_bringup.ros.parameter_file import node_parameters, write_parameter_file
@@ -29,8 +28,6 @@ from uvms_bringup.run_id import new_run_id
 from uvms_bringup.scenario import Scenario
 from uvms_core import topics
 from uvms_core.config import validated
-from uvms_core.messages import to_message
-from uvms_core.ros.convert import action_class, to_ros
 from uvms_core.ros.request import Request
 from uvms_core.ros.spin import Spinner, start
 from uvms_core.signals import to_nanoseconds, to_seconds
@@ -43,6 +40,8 @@ FIRST_TICKS = 3
 UNANSWERED = 3
 """The replay is aborted after this many ticks in a row without an answer."""
 LOOK_S = 0.5
+START_LOOK_S = 0.02
+"""Wall time between two looks while something is to begin."""
 
 
 class NodeReplay:
@@ -65,6 +64,7 @@ class NodeReplay:
         start(["uvms"])
         self._processes = NodeProcesses(folder / "logs", values)
         self._player = InputPlayer(run, node, self.topics, tick_of, log)
+        self._goals = self._goals_of(node)
         self._spinner = Spinner([self._player])
         self._processes.start(node, self._command(folder))
         self._processes.release()
@@ -75,6 +75,12 @@ class NodeReplay:
         if node == topics.NAVIGATION and self.scenario.navigation.source == "truth":
             return replace(own, inputs=(*own.inputs, topics.TRUE_ODOMETRY))
         return own
+
+    def _goals_of(self, node: str) -> GoalsAgain | None:
+        if node != topics.MOTION_PLANNER:
+            return None
+        goals = self.scenario.build_goals(self._vehicle)
+        return GoalsAgain(self._player, goals, self._vehicle.joint_names)
 
     def _command(self, folder: Path) -> list[str]:
         vehicle = folder / "vehicle.yaml"
@@ -101,19 +107,24 @@ class NodeReplay:
                 raise RunError(
                     f"timed out after {START_PATIENCE_S:.0f} s: {self.node}: {self._player.lack}"
                 )
-            self._spinner.spin_for(Future(), 0.02)
+            self._spinner.spin_for(Future(), START_LOOK_S)
         if self.node == topics.PLANT:
             self._start_plant()
+        if self._goals is not None:
+            self._wait_until(self._goals.begin, "the planner does not wait for goals")
 
     def _start_plant(self) -> None:
         client = self._player.create_client(Trigger, "start")
         request = Request(lambda: client.call_async(Trigger.Request()), client.service_is_ready)
+        self._wait_until(lambda: request.answer() is not None, "the plant did not start")
+
+    def _wait_until(self, ready: Callable[[], bool], lack: str) -> None:
         deadline = time.monotonic() + START_PATIENCE_S
-        while request.answer() is None:
+        while not ready():
             self._check()
             if time.monotonic() > deadline:
-                raise RunError(f"timed out after {START_PATIENCE_S:.0f} s: the plant did not start")
-            self._spinner.spin_for(Future(), 0.02)
+                raise RunError(f"timed out after {START_PATIENCE_S:.0f} s: {lack}")
+            self._spinner.spin_for(Future(), START_LOOK_S)
 
     def all_ticks(self, metronome: Metronome, line: ProgressLine) -> int:
         """Play tick by tick; returns how many were left unanswered."""
@@ -128,8 +139,6 @@ class NodeReplay:
             unanswered += not answered
             if in_a_row >= UNANSWERED:
                 self._give_up(tick)
-            if number == 0:
-                self._send_goal()
             line.show(tick.stamp, f"{unanswered} ticks unanswered" if unanswered else "")
         return unanswered
 
@@ -143,12 +152,21 @@ class NodeReplay:
         return self._await(future, patience)
 
     def _await(self, future: Future, patience: float) -> bool:
+        """Whether the answer came in this time, s; a planner gives none before it has its goal."""
         deadline = time.monotonic() + patience
-        while not self._spinner.spin_for(future, min(LOOK_S, patience)):
+        while not self._spinner.spin_for(future, self._look_s):
             self._check()
+            if self._goals is not None and self._goals.is_awaited:
+                self._goals.go_on()
+                deadline = time.monotonic() + patience
             if time.monotonic() > deadline:
                 return False
         return True
+
+    @property
+    def _look_s(self) -> float:
+        is_awaited = self._goals is not None and self._goals.is_awaited
+        return START_LOOK_S if is_awaited else LOOK_S
 
     def _check(self) -> None:
         self._processes.check()
@@ -160,25 +178,6 @@ class NodeReplay:
             f"{self.node} did not answer at t = {to_seconds(tick.stamp):g} s; its output is "
             f"in {self._processes.log_of(self.node)}"
         )
-
-    def _send_goal(self) -> None:
-        """The planner's goal follows its first tick, as in every run."""
-        goal = next(iter(in_turn(self.scenario.build_goals(self._vehicle))), None)
-        if self.node != topics.MOTION_PLANNER or goal is None:
-            return
-        action = topics.action_of(goal)
-        cls: Any = action_class(action)
-        client = ActionClient(self._player, cls, action.name)
-        deadline = time.monotonic() + START_PATIENCE_S
-        while not client.server_is_ready():
-            self._check()
-            if time.monotonic() > deadline:
-                raise RunError(f"nobody serves the action {action.name!r}")
-            self._spinner.spin_for(Future(), 0.02)
-        names = self._vehicle.joint_names
-        sent = client.send_goal_async(to_ros(cls.Goal, to_message(action, goal, names)))
-        if not self._await(sent, START_PATIENCE_S) or not sent.result().accepted:
-            raise RunError("the planner rejected the goal of the recorded run")
 
 
 def replay_into(run: RunLog, node: str, rate: float, folder: Path) -> int:

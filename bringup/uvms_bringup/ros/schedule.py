@@ -27,14 +27,20 @@ class TickOf:
     def __init__(self, run: RunLog, period: int, planner_step: int) -> None:
         self._period, self._step = period, planner_step
         self._reference = run.full_name(topics.REFERENCE)
+        self._first = _first_stamp(run, self._reference)
 
     def __call__(self, name: str, stamp: int) -> int:
-        """A reference comes one planner step ahead; a sensor's samples since the last tick come
-        with the tick at or after them.
+        """A reference comes one planner step ahead, but for the first, which begins at its tick; a
+        sensor's samples since the last tick come with the tick at or after them.
         """
         if name == self._reference:
-            return max(stamp - self._step, 0)
+            return max(stamp - self._step, self._first)
         return -(-stamp // self._period) * self._period
+
+
+def _first_stamp(run: RunLog, name: str) -> int:
+    stamps = (stamp_of(data) for _, _, data in run.raw([name])) if name in run.topics else ()
+    return next(iter(stamps), 0)
 
 
 def with_gaps(run: RunLog, own: topics.NodeTopics) -> topics.NodeTopics:

@@ -3,7 +3,6 @@
 from functools import lru_cache
 
 import numpy as np
-from scipy.stats import qmc
 
 from uvms_core.signals import Array
 from uvms_dynamics import Model, restoring_wrench
@@ -16,6 +15,8 @@ REMEMBERED = 8  # models and ranges
 
 def spread_postures(lower: Array, upper: Array, log2: int) -> Array:
     """2^log2 postures (k, n) evenly spread between the bounds (n,), always the same ones."""
+    from scipy.stats import qmc  # loads in half a second, which a planner at its start can spare
+
     return lower + qmc.Sobol(len(lower), scramble=False).random_base2(log2) * (upper - lower)
 
 
