@@ -14,6 +14,8 @@ A constant error that is no state of the filter does not average out over sample
 noise that lasts `LASTING_S`: as so much white noise that as many samples leave it as it is.
 """
 
+from math import ceil, log, pi, sqrt
+
 from uvms_core.signals import Array
 
 ByAxis = tuple[float, float, float]
@@ -24,6 +26,11 @@ NOTHING: ByAxis = 0.0, 0.0, 0.0
 LASTING_S = 100.0
 """How long an error without a state is taken to last, s: some of the vehicle's manoeuvres, in which
 it changes its sign."""
+
+ROUNDED = 0.25
+"""Step to which drivers round at least, in std of the noise, where a vehicle file says nothing."""
+BY_CHANCE = 1e-7
+"""Share of samples that may end a row of equal ones by chance: one in weeks."""
 
 
 def with_stated(white: Array, stated: Array, known: ByAxis) -> Array:
@@ -49,3 +56,20 @@ def beyond(stated: Array, known: ByAxis) -> ByAxis:
 def as_white(std: float, rate_hz: float) -> float:
     """Variance of the white noise that stands for a constant error, by its std."""
     return std**2 * max(1.0, rate_hz * LASTING_S)
+
+
+def most_alike(std: float, step: float, size: int) -> int | None:
+    """How many samples in a row may be the same to the last bit; None: any number.
+
+    Two values with white noise that are rounded to a step are the same at rest with a probability
+    of about step / (2 sqrt(pi) std), where the step is small.
+
+    Args:
+        std: of the white noise of each value.
+        step: to which they are rounded; 0 where it is not known.
+        size: number of values.
+    """
+    if std == 0.0:
+        return None
+    same = (max(step, ROUNDED * std) / (2.0 * sqrt(pi) * std)) ** size
+    return None if same > 0.5 else 1 + ceil(log(BY_CHANCE) / log(same))

@@ -62,6 +62,10 @@ class Away(NamedTuple):
     level: Array  # (size,) running mean of the residuals since then
     chances: int = 0  # samples left among which it may agree
 
+    def back(self, residual: Array) -> "Away":
+        """After a jump back, to this residual."""
+        return Away(self.by, residual.copy(), CHANCES)
+
 
 class Tally(NamedTuple):
     """Counts of one sensor's samples."""
@@ -135,6 +139,11 @@ class InnovationGate:
             away = self._jumped(innovation)
         since = tally.since if tally.row else stamp
         return tally._replace(gated=tally.gated + 1, row=tally.row + 1, since=since, away=away)
+
+    def refused(self, tally: Tally, stamp: int) -> Tally:
+        """The tally after a sample that is no measurement, whatever it reads."""
+        since = tally.since if tally.row else stamp
+        return tally._replace(gated=tally.gated + 1, row=tally.row + 1, since=since)
 
     def _jumped(self, innovation: Array) -> Away | None:
         """What to remember of the first sample that was rejected."""
