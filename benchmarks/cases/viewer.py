@@ -1,5 +1,6 @@
 """The 3-D page of the whole manipulation: time to its start, frames, memory, shared file."""
 
+import subprocess
 import sys
 import tempfile
 import time
@@ -14,14 +15,14 @@ from metrics import Metric, Target
 from uvms_bringup.cli import main
 from uvms_bringup.viewer.export import export
 from uvms_bringup.viewer.log_source import LogSource
-from uvms_bringup.viewer.page import LogPage
+from uvms_bringup.viewer.page import LogPage, Site
 
 sys.path.insert(0, str(Path(__file__).parents[2] / "tests" / "uvms_bringup"))
 from browser import browser_tab
 from viewed import served
 
 SIZE = (1280, 720)
-COUNT_S = 10
+COUNT_S = 4
 """Wall time over which frames are counted."""
 COUNT = f"""new Promise(done => {{
   let frames = 0; const began = performance.now();
@@ -32,6 +33,8 @@ COUNT = f"""new Promise(done => {{
   requestAnimationFrame(next);
 }})"""
 """Frames a second. While the run plays the page asks for one after the other."""
+TURNS = 5
+"""Of our scene and of an empty one; the medians count."""
 LOOPS, LOOPS_FULL = 4, 20
 STOPS = 60
 """Times of the run that are shown in each loop."""
@@ -59,25 +62,42 @@ def measure(full: bool) -> Iterator[Metric]:
 
 
 def _page(run: Path, tab: Any, loops: int) -> Iterator[Metric]:
-    began = time.perf_counter()
-    page = LogPage(LogSource(run), port=0)
+    yield Metric("viewer_ready", _ready(run, tab), "s", target=Target("value", "<=", 5.0))
+    page = LogPage(LogSource(run), Site(port=0))
     with served(page):
         tab.open(page.address)
         tab.wait_for_text("UVMS: manipulation")
-        ready = time.perf_counter() - began
-        yield Metric("viewer_ready", ready, "s", target=Target("value", "<=", 5.0))
         yield _frames(page, tab)
         yield _memory(page, tab, loops)
 
 
+def _ready(run: Path, tab: Any) -> float:
+    """From the command to the page in a browser that is open already."""
+    command = [sys.executable, "-m", "uvms_bringup.cli", "view", str(run), "--no-browser"]
+    began = time.perf_counter()
+    with subprocess.Popen([*command, "--port", "0"], stdout=subprocess.PIPE, text=True) as view:
+        assert view.stdout is not None
+        tab.open(view.stdout.readline().split()[1])
+        tab.wait_for_text("UVMS: manipulation")
+        ready = time.perf_counter() - began
+        view.terminate()
+    return ready
+
+
 def _frames(page: LogPage, tab: Any) -> Metric:
-    """The most that this machine reaches is what it reaches with nothing in the scene."""
-    played = _played(page, tab)
-    page.server.scene.set_global_visibility(False)
-    bound = _played(page, tab)
+    """The most that this machine reaches is what it reaches with nothing in the scene.
+
+    Both take turns, as others may be at work on the machine.
+    """
+    played: dict[bool, list[float]] = {True: [], False: []}
+    for is_shown in (True, False) * TURNS:
+        page.server.scene.set_global_visibility(is_shown)
+        played[is_shown].append(_played(page, tab))
+    page.server.scene.set_global_visibility(True)
+    ours, bound = (float(np.median(played[is_shown])) for is_shown in (True, False))
     return Metric(
-        "viewer_frames", played, "1/s", f"the same with an empty scene, {bound:.3g} a second",
-        played / bound, Target("value", ">=", 30.0),
+        "viewer_frames", ours, "1/s", f"the same with an empty scene, {bound:.3g} a second",
+        ours / bound, Target("value", ">=", 30.0),
     )  # fmt: skip
 
 

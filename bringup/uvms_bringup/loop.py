@@ -13,7 +13,8 @@ from uvms_bringup.scenario import Scenario
 from uvms_control.parts import AllocatorPart, ControllerPart
 from uvms_core import topics
 from uvms_core.attitude import attitude_status
-from uvms_core.diagnostics import Status
+from uvms_core.battery import battery_status
+from uvms_core.diagnostics import Status, together
 from uvms_core.part import InProcess, Output, Part
 from uvms_core.plausibility import Plausibility
 from uvms_core.signals import (
@@ -150,8 +151,11 @@ class Loop:
 
     def final_status(self, tick: LoopTick) -> Iterator[Status]:
         """What the plant and every part have to say at the last tick, as nodes do each second."""
-        attitude = attitude_status(tick.truth.odometry.quaternion)
-        yield Status(tick.stamp, topics.PLANT, *attitude, {"lockstep_timeouts": 0})
+        said = together(
+            attitude_status(tick.truth.odometry.quaternion),
+            battery_status(self.plant.battery_share),
+        )
+        yield Status(tick.stamp, topics.PLANT, *said, {"lockstep_timeouts": 0})
         yield from self._process.final_status(tick.stamp)
 
     def advance(self, tick: LoopTick) -> None:

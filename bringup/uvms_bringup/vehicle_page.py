@@ -73,9 +73,24 @@ def _lines(summary: dict[str, Any]) -> Iterator[str]:
     yield from _thrusters(summary)
     yield from _thrust(summary)
     yield from _joints(summary)
+    yield from _electrical(summary["electrical"])
     yield "  sensors"
     for name, sensor in summary["sensors"].items():
         yield f"    {name:24} {sensor['rate_hz']:>7g} Hz  at {_vector(sensor['position_m'])} m"
+
+
+def _electrical(found: dict[str, Any]) -> Iterator[str]:
+    if "lacks" in found:
+        yield f"  electrical power is not given: {found['lacks']}"
+        return
+    yield (
+        f"  takes {found['hotel_load_w']:g} W at rest, {found['full_thrust_w']:.4g} W more with all"
+        " thrusters at their limits"
+    )
+    if "battery_wh" in found:
+        lasts = found.get("lasts_at_rest_h")
+        rest = "" if lasts is None else f", {lasts:.3g} h at rest"
+        yield f"  battery {found['battery_wh']:.4g} Wh, {found['battery_ah']:.4g} Ah{rest}"
 
 
 def _net(newtons: float) -> str:

@@ -8,6 +8,7 @@ from uvms_control.allocation.authority import axis_authority
 from uvms_control.vehicle_data import thruster_limits
 from uvms_core.signals import Array
 from uvms_core.vehicle import Vehicle, joint_limits
+from uvms_core.vehicle.plausible.energy import greatest_power_w
 from uvms_core.vehicle.plausible.propulsion import (
     AXES,
     axes_out_of_reach,
@@ -51,6 +52,7 @@ def vehicle_summary(vehicle: Vehicle) -> dict[str, Any]:
         "axes_out_of_reach": list(axes_out_of_reach(vehicle)),
         "axes_pushed_one_way": list(axes_pushed_one_way(vehicle)),
         "speed_m_s": _speeds(vehicle),
+        "electrical": _electrical(vehicle),
         "joints": _joints(vehicle),
         "sensors": {
             name: {"rate_hz": sensor.rate_hz, "position_m": list(sensor.position_m)}
@@ -119,6 +121,18 @@ def _speeds(vehicle: Vehicle) -> dict[str, float]:
         axis: terminal_speed(forces[axis][1], float(linear[k]), float(quadratic[k]))
         for k, axis in enumerate(AXES[:3])
     }
+
+
+def _electrical(vehicle: Vehicle) -> dict[str, Any]:
+    """Power of the loads, W, and what the battery holds, Wh; `lacks`: why that is not known."""
+    if vehicle.electrical is None or vehicle.lacks_power:
+        return {"lacks": vehicle.lacks_power}
+    hotel, battery = vehicle.electrical.hotel_load_w, vehicle.battery
+    known = {"hotel_load_w": hotel, "full_thrust_w": greatest_power_w(vehicle) - hotel}
+    if battery is None:
+        return known
+    at_rest = {"lasts_at_rest_h": battery.energy_wh / hotel} if hotel else {}
+    return known | {"battery_wh": battery.energy_wh, "battery_ah": battery.charge_ah} | at_rest
 
 
 def _joints(vehicle: Vehicle) -> dict[str, dict[str, float]]:

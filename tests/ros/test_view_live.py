@@ -15,6 +15,7 @@ from viewed import pixel_of, served
 from uvms_bringup.ros.live_source import LiveSource
 from uvms_bringup.viewer.elements import is_shown, world_pose
 from uvms_bringup.viewer.live_page import GIZMO, LivePage
+from uvms_bringup.viewer.page import Site
 
 pytestmark = pytest.mark.slow
 SIZE = (900, 600)
@@ -94,7 +95,7 @@ def stage(tmp_path_factory):
         try:
             graph.wait()
             with (
-                served(LivePage(graph, port=0)) as page,
+                served(LivePage(graph, Site(port=0))) as page,
                 browser_tab(folder / "profile", SIZE) as tab,
             ):
                 tab.open(page.address)

@@ -19,6 +19,7 @@ from uvms_core.end_effector_path import EndEffectorPath
 from uvms_core.signals import (
     Allocation,
     AppliedThrust,
+    BatteryState,
     DisturbanceBudget,
     JointCommand,
     JointStates,
@@ -169,6 +170,11 @@ class Synthetic:
         before = max(stamp - to_nanoseconds(PERIOD), 0)
         applied = AppliedThrust(stamp, thrust, thrust, before, before, number == 0, number == 0)
         log.write(topics.APPLIED_THRUST, applied)
+        if number % round(topics.BATTERY_PERIOD_S / PERIOD) == 0:
+            share = 1.0 - time / 1024.0  # in binary, so that 32 bits hold it
+            log.write(
+                topics.BATTERY_STATE, BatteryState(stamp, 48.0, -2.0, 64 * share, 64.0, share)
+            )
         if number % 10 == 0:
             self.plan(log, number, stamp, time)
 

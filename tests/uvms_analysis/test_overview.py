@@ -68,6 +68,7 @@ def test_info_prints_run_vehicle_and_topics(path, capsys):
     text = capsys.readouterr().out
     assert "reference_auv" in text
     assert "0 s to 6" in text
+    assert "battery          100.00% to 99.41%, at the end 48 V" in text
     assert "/auv/odometry" in text
     assert main(["info", "--json", str(path)]) == 0
     facts = json.loads(capsys.readouterr().out)

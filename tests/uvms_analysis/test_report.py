@@ -110,8 +110,25 @@ def test_every_figure_has_a_unit_or_says_why_it_is_missing(page):
         assert re.fullmatch(r"-?[\d.e+-]+ \S.*|missing: \S.*|0\.75", value), value  # NEES has none
 
 
-def test_electrical_energy_is_said_to_be_missing(page):
-    assert "Electrical energy and battery are missing" in page
+def test_the_energy_of_the_run_and_of_each_thruster_is_shown(folder, page):
+    found = summarise(folder / "run.mcap", wall_s=None)
+    assert figure(page, "electrical energy") == f"{found['energy']['total_wh']:.4g} Wh"
+    main = found["energy"]["thrusters_wh"]["main"]
+    assert figure(page, "main").startswith(f"{main:.4g} Wh")
+    # 1/1024 of the battery a second, by its own account
+    assert figure(page, "share of the battery that was used") == "0.5859 %"
+    assert figure(page, "how long a full battery lasts at this rate") == "0.2844 h"
+    _, left = line_of(page_data(page), "battery_left", "left")
+    assert left == pytest.approx(100.0 * (1.0 - np.arange(7.0) / 1024.0))
+
+
+def test_an_old_log_says_why_its_battery_is_missing(folder, tmp_path):
+    log = without(folder / "run.mcap", tmp_path / "run.mcap", topics.BATTERY_STATE)
+    page = html.unescape(report(log).read_text(encoding="utf-8"))
+    why = "the log has no battery_state, although the vehicle has a battery"
+    assert figure(page, "share of the battery that was used") == f"missing: {why}"
+    assert f"No figure: {why}" in page
+    assert figure(page, "electrical energy").endswith(" Wh")
 
 
 def test_an_old_log_says_what_it_lacks_and_shows_the_rest(folder, tmp_path):

@@ -13,6 +13,7 @@ from uvms_core.errors import UvmsError
 DIFFERENT = "plant.mismatch={mass: 0.2, damping: 0.2, buoyancy_centre_m: 0.001}"
 PUSH = "events=[{at_s: 1, until_s: 2, wrench: {force_n: [5, 0, 0], moment_nm: [0, 0, 0]}}]"
 
+THIRSTY = "plant.vehicle_overrides={electrical.hotel_load_w: 100.0}"
 SILENT = "events=[{at_s: 1, until_s: 2, sensor: dvl, fault: silent}]"
 
 
@@ -31,6 +32,7 @@ def flat(summary):
         ("arm_swing", ["vehicle=bluerov2_alpha5"], 2.0, "completed"),
         ("hover", [DIFFERENT, PUSH], 2.0, "completed"),
         ("hover", [SILENT], 3.0, "completed"),
+        ("hover", [THIRSTY, "plant.battery_charge=0.20001"], 2.0, "completed"),
     ],
 )
 def test_the_summary_from_memory_is_that_of_the_log(tmp_path, name, settings, duration, outcome):

@@ -5,7 +5,7 @@ from dataclasses import replace
 import pytest
 from rich.console import Console
 
-from uvms_bringup.terminal.glance import Bounded, Glance, Health, Measured, Push, Thruster
+from uvms_bringup.terminal.glance import Battery, Bounded, Glance, Health, Measured, Push, Thruster
 from uvms_bringup.terminal.line import line
 from uvms_bringup.terminal.panel import BESIDE_COLUMNS, MOST_COLUMNS, panel, shortened
 from uvms_core import diagnostics
@@ -32,6 +32,7 @@ SILENT = Measured(
     (Thruster("main", None, -98.0, 98.0),),
 )
 WIDTHS = (40, 80, 200)
+NAN = float("nan")
 
 
 def drawn(glance: Glance, columns: int, is_ascii: bool = False, colours: bool = False) -> str:
@@ -69,6 +70,22 @@ def test_every_value_is_there_with_its_unit(columns):
     assert "12.0 s: payload 2 kg" in text
     assert "+49.0 N!" in text
     assert "-20.0 N " in text
+
+
+LOW = Glance(45.0, 900.0, 9.5, "", replace(MEASURED, battery=Battery(0.153, 14.25, 180.4)))
+
+
+@pytest.mark.parametrize("columns", WIDTHS)
+def test_a_battery_has_a_line_where_there_is_one(columns):
+    assert "15.3%, 14.2 V, 180 W !" in row(drawn(LOW, columns), "battery")
+    full = replace(LOW, measured=replace(MEASURED, battery=Battery(0.9, 16.0, 60.0)))
+    assert "90.0%, 16.0 V, 60 W " in row(drawn(full, columns), "battery")
+    assert "!" not in row(drawn(full, columns), "battery").split("W")[1][:3]
+    unknown = replace(LOW, measured=replace(MEASURED, battery=Battery(NAN, 16.0, NAN)))
+    assert "-, 16.0 V, -" in row(drawn(unknown, columns), "battery")
+    assert "battery" not in drawn(GLANCE, columns)
+    assert "battery 15.3%, 14.2 V, 180 W !" in line(LOW)
+    assert "battery" not in line(GLANCE)
 
 
 @pytest.mark.parametrize("columns", [*WIDTHS, BESIDE_COLUMNS - 1, BESIDE_COLUMNS, 131])

@@ -74,6 +74,16 @@ def test_attitude_thrust_and_disturbance_are_those_of_the_tick(at_end):
     assert measured.health.words == "ok"
 
 
+def test_the_battery_is_shown_between_its_samples_and_forgotten_after_them(at_end, flown):
+    listener, _, last = at_end
+    said = [tick.truth.battery for tick in flown[2] if tick.truth.battery is not None]
+    assert [each.stamp for each in said] == [0, 10**9, 2 * 10**9]
+    battery = listener.measured(last.stamp).battery
+    assert (battery.share, battery.voltage) == (said[-1].percentage, said[-1].voltage)
+    assert battery.power == pytest.approx(said[-1].power)
+    assert listener.measured(said[-1].stamp + 3 * 10**9).battery is None
+
+
 @pytest.mark.parametrize("shift_mm", [(0.0, 0.0, 0.0), (3.0, -4.0, 0.0), (0.0, 0.0, 300.0)])
 def test_the_tool_is_off_by_as_much_as_the_vehicle_on_its_plan_is_shifted(flown, heard, shift_mm):
     reference = next(

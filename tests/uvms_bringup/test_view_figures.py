@@ -1,4 +1,4 @@
-"""The viewer's pictures in the documentation show what the viewer shows today."""
+"""The pictures of viewer and report in the documentation show what these show today."""
 
 import importlib.util
 import json
@@ -20,14 +20,14 @@ NEAR_M = 0.05
 AGAIN = "`make pictures` makes the pictures of the viewer again"
 
 
-def _gallery():
-    spec = importlib.util.spec_from_file_location("gallery", ROOT / "tools/pictures/gallery.py")
+def _tool(name):
+    spec = importlib.util.spec_from_file_location(name, ROOT / f"tools/pictures/{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
-GALLERY = _gallery()
+GALLERY, REPORT = _tool("gallery"), _tool("report_shot")
 SHOTS = {shot.name: shot for shot in GALLERY.GALLERY}
 
 
@@ -58,13 +58,43 @@ def test_a_picture_is_current(name, tmp_path):
     assert differences(other, now)  # a light 10 cm lower would be told
 
 
+@pytest.fixture(scope="module")
+def swing(tmp_path_factory):
+    """The run of the movie and of the report's picture."""
+    folder = tmp_path_factory.mktemp("swing") / "run"
+    assert main(["simulate", *GALLERY.MOVIE.arguments, "--output", str(folder)]) == 0
+    return folder
+
+
+def test_the_movie_is_current(swing):
+    kept = json.loads((FIGURES / f"view_{GALLERY.MOVIE.name}.json").read_text())
+    now = GALLERY.movie_told(LogSource(swing))
+    assert (kept["arguments"], kept["speed"]) == (GALLERY.MOVIE.arguments, now["speed"]), AGAIN
+    assert differences(kept, now) == [], AGAIN
+    kept["shown"]["23 s: estimated/tool"][-1][0] += 0.1
+    assert differences(kept, now)  # an arm elsewhere would be told
+
+
+def test_the_picture_of_the_report_is_current(swing, capsys):
+    assert main(["report", str(swing)]) == 0
+    now = REPORT.told((swing / "report.html").read_text(encoding="utf-8"))
+    kept = json.loads((FIGURES / "report.json").read_text())
+    assert kept["arguments"] == GALLERY.MOVIE.arguments, AGAIN
+    assert kept["questions"] == now["questions"], AGAIN
+    assert len(now["figures"]) >= 5
+    assert kept["figures"].keys() == now["figures"].keys(), AGAIN
+    for title, (value, unit) in now["figures"].items():
+        assert kept["figures"][title] == [pytest.approx(value, rel=0.05), unit], (title, AGAIN)
+
+
 def test_pictures_and_movie_are_there_and_small():
     for name in SHOTS:
         with Image.open(FIGURES / f"view_{name}.png") as picture:
             assert picture.size == (1280, 720)
     movie = FIGURES / f"view_{GALLERY.MOVIE.name}.gif"
-    assert movie.stat().st_size < 2e6
+    assert movie.stat().st_size < 4e5
     with Image.open(movie) as frames:
         assert frames.n_frames >= 50
+    assert (FIGURES / "report.png").stat().st_size < 3e5
     kept = {path.stem for path in FIGURES.glob("view_*")}
     assert kept == {f"view_{name}" for name in [*SHOTS, GALLERY.MOVIE.name]}

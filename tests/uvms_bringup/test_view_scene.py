@@ -17,7 +17,7 @@ from uvms_bringup.viewer.moment import Forces, Moment, Posture, Thrusts
 from uvms_bringup.viewer.player import Player
 from uvms_bringup.viewer.pushes import FULL, IDLE
 from uvms_bringup.viewer.scene_model import SceneModel, Setting
-from uvms_bringup.viewer.tool_paths import PIECES
+from uvms_bringup.viewer.tool_paths import PIECES, blocks, cover
 from uvms_bringup.viewer.uncertainty import SIGMAS
 from uvms_core import topics
 from uvms_core.rotations import quat_to_matrix, rpy_to_quat
@@ -167,15 +167,28 @@ def test_the_world_of_the_run_is_there(source, model):
 
 def test_the_tool_leaves_its_path_behind_and_has_its_target_ahead(source, model):
     early, late = (model.all_places(source.moment(time)) for time in (2.0, 7.5))
-    shown = [[is_shown(f"travelled_{n:02d}", places) for n in range(PIECES)]
-             for places in (early, late)]  # fmt: skip
-    assert 0.2 < np.mean(shown[0]) < 0.3
-    assert 0.9 < np.mean(shown[1]) < 1.0
+    for places, time in ((early, 2.0), (late, 7.5)):
+        names = sorted(name for name in model.nodes if name.startswith("travelled_"))
+        shown = [places[name].points for name in names if is_shown(name, places)]
+        assert len(shown) <= np.log2(PIECES)
+        way = np.concatenate([*shown[:1], *(line[1:] for line in shown[1:])])
+        over = source.overview
+        assert np.array_equal(way, over.tool[: len(way)])
+        assert 0.0 <= time - over.times[len(way) - 1] < 1.2 * source.end_s / PIECES
     tool = world_pose(model.true.tool, late)[0]
     assert np.linalg.norm(late["target"].position - tool) < 0.05
     plan = late["planned_path"].points
     assert np.linalg.norm(plan[0] - late["target"].position) < 0.01
     assert is_shown("asked_path", late)
+
+
+def test_any_number_of_pieces_is_few_lines_which_are_all_there():
+    there = set(blocks(PIECES))
+    for passed in range(PIECES + 1):
+        lines = list(cover(passed))
+        assert len(lines) == passed.bit_count()
+        assert set(lines) <= there
+        assert [n for first, end in lines for n in range(first, end)] == list(range(passed))
 
 
 def test_propellers_turn_with_their_thrust_and_the_same_way_at_every_visit(source):
@@ -275,7 +288,7 @@ def test_what_is_drawn_together_covers_the_same_triangles_and_never_moves(source
     assert not model.still & model.places(source.moment(5.0)).keys()
     joined, gone = batches(model.nodes, model.nodes.keys() - model.still)
     assert gone <= model.still
-    assert len(gone) > 40  # of the two vehicles: fins, ducts, blades
+    assert len(gone) > 30  # of the two vehicles: fins, ducts; blades of the one
     places = {name: node.place for name, node in model.nodes.items()}
     for batch in joined:
         carrier = parent(batch.name)

@@ -24,8 +24,10 @@ def plain(value):
 
 
 def leaves(value, path=""):
-    """Every number and text in a message of any kind, by its path."""
-    if isinstance(value, (str, bytes, int, float, bool, np.generic)):
+    """Every number and text in a message of any kind, by its path; a NaN as a text."""
+    if isinstance(value, (float, np.floating)) and np.isnan(value):
+        yield path, "NaN"
+    elif isinstance(value, (str, bytes, int, float, bool, np.generic)):
         yield path, value
     elif isinstance(value, (list, tuple, np.ndarray)):
         for index, item in enumerate(value):

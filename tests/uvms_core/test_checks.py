@@ -149,3 +149,14 @@ def test_the_quick_test_of_all_fields_refuses_what_that_of_each_field_refuses(ma
         except SignalError:
             verdicts.append("refused")
     assert verdicts[0] == verdicts[1]
+
+
+def test_signals_in_a_row_are_marked_only_if_all_are_good():
+    good, again, bad = joints(3), joints(3), joints(3)
+    bad.position[1] = np.nan
+    checks.trust_good([good, bad])
+    with pytest.raises(SignalError, match=r"position\[1\] is nan"):
+        checks.check("joint_states", bad)
+    checks.trust_good([good, again])
+    again.position[1] = np.nan
+    checks.check("joint_states", again)  # has been checked

@@ -135,6 +135,15 @@ def test_an_imu_that_says_that_it_measures_no_acceleration_is_refused():
         from_message(topic, message)
 
 
+@pytest.mark.parametrize("field", ["angular_velocity", "linear_acceleration"])
+def test_a_covariance_that_is_not_finite_is_refused(field):
+    topic = topic_of("imu")
+    message = as_message(topic, SAMPLES["imu"])
+    setattr(message, f"{field}_covariance", np.array([0.1, *[np.nan] * 8]))
+    with pytest.raises(SignalError, match=rf"{field}_covariance.*nan"):
+        from_message(topic, message)
+
+
 def test_a_wrong_frame_id_names_the_field_that_changes_it():
     topic = topic_of("imu")
     message = as_message(replace(topic, frame="imu_link"), SAMPLES["imu"])

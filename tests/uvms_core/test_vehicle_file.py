@@ -36,8 +36,9 @@ def test_counts_and_names():
     assert REFERENCE.thruster_names[:3] == ("main", "side_fore", "side_aft")
 
 
-UNITS = "_(m|kg|n|s|deg|hz|pa|m3|m2|s2|nm|rad)(_s|_s2|_m2|_m3|_rad)?$"
+UNITS = "_(m|kg|n|s|deg|hz|pa|m3|m2|s2|nm|rad|w|v|ohm)(_s|_s2|_m2|_m3|_rad)?$"
 WITHOUT_UNIT = {
+    "arm_efficiency",
     "roll_added_inertia_fraction",
     "axial_added_mass_fraction",
     "scale_error",
@@ -114,7 +115,7 @@ def test_unknown_override_lists_the_choices():
     )
     assert refusal(wings=3.0) == (
         "override wings: the vehicle file has no 'wings'; choose from name, environment, hull,"
-        " thrusters, arm, sensors, tether"
+        " thrusters, arm, sensors, tether, electrical"
     )
     assert refusal(thrusters__left__limit_n=1.0).startswith(
         "override thrusters.left.limit_n: thrusters has no 'left'; choose from 0, 1, 2, 3, 4, 5, 6,"

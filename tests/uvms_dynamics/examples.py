@@ -74,6 +74,10 @@ def example(kind: type, rng: np.random.Generator) -> Any:
         signals.AppliedThrust: lambda: signals.AppliedThrust(
             t, n(7), n(7), stamp(rng), stamp(rng), True, False
         ),
+        signals.BatteryState: lambda: signals.BatteryState(
+            t,
+            *n(5).astype(np.float32).tolist(),  # its message has 32-bit numbers
+        ),
         signals.PathGoal: lambda: signals.PathGoal(
             np.array([0.0, 0.5, 2.0]), n(3, 3), unit(rng, 3)
         ),

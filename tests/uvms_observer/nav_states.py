@@ -8,7 +8,11 @@ from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import FURTHER, SIZE, WIDEST, NavigationState
 
 NOISE = ProcessNoise(
-    1e-6, 1e-4, np.linspace(1e-6, 9e-6, SIZE - 9), 1.0 / np.linspace(100.0, 900.0, SIZE - 9)
+    1e-6,
+    1e-4,
+    0.01,
+    np.linspace(1e-6, 9e-6, SIZE - 9),
+    1.0 / np.linspace(100.0, 900.0, SIZE - 9),
 )
 SCALES = np.repeat([1.0, 0.1, 0.02, 1e-3, 1e-2, 2e-3, 1e-2], [3, 3, 3, 3, 3, 3, SIZE - 18])
 
@@ -30,6 +34,7 @@ def random_state(seed):
         root @ root.T,
         np.zeros((3, WIDEST)),
         velocity.copy(),
+        np.square([0.01, 0.02, 0.03, 0.1, 0.2, 0.3]),
     )
 
 

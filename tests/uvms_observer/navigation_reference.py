@@ -44,6 +44,7 @@ def plus(state: NavigationState, e: Array) -> NavigationState:
         state.covariance,
         state.innovation,
         state.reference,
+        state.excess,
     )
 
 
@@ -78,15 +79,22 @@ def propagated_mean(
         state.covariance,
         state.innovation,
         state.reference,
+        state.excess,
     )
+
+
+def middle_attitude(state: NavigationState, rate: Array, dt: float) -> Array:
+    """R (3, 3) in the middle of the interval."""
+    half = rotation_vector_to_quat(0.5 * dt * (rate - state.gyro_bias))
+    middle: Array = quat_to_matrix(quat_multiply(state.quaternion, half))
+    return middle
 
 
 def transition_matrix(
     state: NavigationState, rate: Array, force: Array, dt: float, phi: Array
 ) -> Array:
     """F (SIZE, SIZE): e after dt = F e before."""
-    half = rotation_vector_to_quat(0.5 * dt * (rate - state.gyro_bias))
-    R = quat_to_matrix(quat_multiply(state.quaternion, half))
+    R = middle_attitude(state, rate, dt)
     A = skew(R @ (force - state.accelerometer_bias))
     F = np.eye(SIZE)
     F[POSITION, VELOCITY] = np.eye(3) * dt
@@ -101,13 +109,17 @@ def transition_matrix(
     return F
 
 
-def process_covariance(noise: ProcessNoise, dt: float, phi: Array) -> Array:
-    """Q (SIZE, SIZE) that dt adds."""
+def process_covariance(
+    noise: ProcessNoise, dt: float, phi: Array, R: Array, excess: Array
+) -> Array:
+    """Q (SIZE, SIZE) that dt adds, at the attitude R in its middle."""
+    gyro = np.eye(3) * noise.gyro + R @ np.diag(excess[:3] * noise.period) @ R.T
+    force = np.eye(3) * noise.accelerometer + R @ np.diag(excess[3:] * noise.period) @ R.T
     Q = np.zeros((SIZE, SIZE))
-    Q[POSITION, POSITION] = np.eye(3) * noise.accelerometer * dt**3 / 3.0
-    Q[POSITION, VELOCITY] = Q[VELOCITY, POSITION] = np.eye(3) * noise.accelerometer * dt**2 / 2.0
-    Q[VELOCITY, VELOCITY] = np.eye(3) * noise.accelerometer * dt
-    Q[ATTITUDE, ATTITUDE] = np.eye(3) * noise.gyro * dt
+    Q[POSITION, POSITION] = force * dt**3 / 3.0
+    Q[POSITION, VELOCITY] = Q[VELOCITY, POSITION] = force * dt**2 / 2.0
+    Q[VELOCITY, VELOCITY] = force * dt
+    Q[ATTITUDE, ATTITUDE] = gyro * dt
     Q[LATER, LATER] = np.diag((1.0 - phi**2) * noise.variance)
     return Q
 
@@ -123,7 +135,9 @@ def propagated(
     """Nominal state and covariance F P F^T + Q after dt."""
     phi = np.exp(-dt * noise.decay)
     F = transition_matrix(state, rate, force, dt, phi)
-    covariance = F @ state.covariance @ F.T + process_covariance(noise, dt, phi)
+    R = middle_attitude(state, rate, dt)
+    Q = process_covariance(noise, dt, phi, R, state.excess)
+    covariance = F @ state.covariance @ F.T + Q
     mean = propagated_mean(state, rate, force, dt, gravity, phi, noise.variance)
     return mean._replace(covariance=covariance)
 

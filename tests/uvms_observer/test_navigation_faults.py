@@ -30,7 +30,7 @@ def test_the_estimate_stays_right_and_says_how_right(name):
 
 def test_a_sensor_that_jumped_away_does_not_slip_in_where_the_estimate_has_become_uncertain():
     """A unit between the two classes alone is after some seconds less certain than the DVL is
-    wrong; that of the BlueROV2 is so bad that nothing but the flag tells water lock.
+    wrong; that of the BlueROV2 is worse (`test_lying_velocity.py`).
     """
     vehicle = load_vehicle("bluerov2_alpha5")
     better = {"accelerometer_noise_m_s2": 0.02, "accelerometer_bias_m_s2": 0.05}
@@ -40,7 +40,7 @@ def test_a_sensor_that_jumped_away_does_not_slip_in_where_the_estimate_has_becom
     vehicle = vehicle.model_copy(update={"sensors": sensors})
     outcome = outcome_of(FAULTS["dvl has water lock in a current"], 1, vehicle)
     status = outcome.navigation.status()
-    assert status["dvl_gated"] == 15 * 8  # those of the fault, and no other
+    assert 15 * 8 <= status["dvl_gated"] <= 15 * 8 + 2  # two more, until it is sure to be back
     assert outcome.errors.max() < 2.0  # what such a unit makes of 15 s by itself
     assert outcome.distances.max() < 3.0
 

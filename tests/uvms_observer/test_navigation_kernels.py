@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from nav_states import NOISE, minus, numeric_jacobian, random_state
 from scipy.spatial.transform import Rotation
 
+from uvms_dynamics.kernels.rotations import skew
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements import dvl, imu, position, pressure
 from uvms_observer.navigation.propagation import propagate
@@ -155,7 +156,9 @@ def test_a_correction_keeps_what_the_dvl_has_told_of_its_reading(seed):
     measured = dvl.velocity(state, LEVER, RATE, False)[0] + 0.02
     plain = state.copied()
     expected, H = dvl.velocity(plain, LEVER, RATE, False)
-    correct(plain, H, measured - expected, 1e-6 * np.eye(3), OPEN)
+    arm = skew(LEVER)
+    N = 1e-6 * np.eye(3) + arm @ np.diag(state.excess[:3]) @ arm.T
+    correct(plain, H, measured - expected, N, OPEN)
     dvl.correct_velocity(tuple(state), measured, 1e-6, LEVER, RATE, 0.0, False, OPEN)
     np.testing.assert_allclose(state.velocity, plain.velocity, atol=1e-12)
     np.testing.assert_array_equal(state.reference, state.velocity)

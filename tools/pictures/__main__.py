@@ -1,4 +1,4 @@
-"""Make the viewer's pictures and its movie in docs/figures again: `make pictures`."""
+"""Make the pictures of viewer and report, and the movie, in docs/figures: `make pictures`."""
 
 import json
 import sys
@@ -6,7 +6,9 @@ import tempfile
 from pathlib import Path
 from typing import Any
 
-from gallery import GALLERY, MOVIE, MOVIE_SPEED, Shot
+from gallery import GALLERY, MOVIE, MOVIE_SPEED, Shot, movie_told
+from report_shot import photograph
+from report_shot import told as report_told
 
 from uvms_bringup.cli import main
 from uvms_bringup.viewer.describe import describe
@@ -43,15 +45,33 @@ def _lines(told: dict[str, Any]) -> str:
     return f'{{\n{rest} "shown": {{\n  {things}\n }}\n}}\n'
 
 
-def film(folder: Path) -> None:
-    """The movie."""
+def film(folder: Path) -> LogSource:
+    """The movie and its description; the run."""
     source = simulated(MOVIE, folder)
     file = FIGURES / f"view_{MOVIE.name}.gif"
     print(write_movie(source, file, MOVIE.camera, speed=MOVIE_SPEED), file=sys.stderr)
+    told = _lines({"arguments": MOVIE.arguments, **movie_told(source)})
+    file.with_suffix(".json").write_text(told)
+    return source
+
+
+def photograph_report(source: LogSource) -> None:
+    """The picture of a run's report, and what it shows."""
+    report, picture = report_of(source), FIGURES / "report.png"
+    print(photograph(report, picture), file=sys.stderr)
+    told = {"arguments": MOVIE.arguments, **report_told(report.read_text(encoding="utf-8"))}
+    picture.with_suffix(".json").write_text(json.dumps(told, indent=1) + "\n")
+
+
+def report_of(source: LogSource) -> Path:
+    """Write the report of a run."""
+    if main(["report", str(source.log.path)]) != 0:
+        raise SystemExit(f"there is no report of {source.log.path}")
+    return source.log.path.parent / "report.html"
 
 
 if __name__ == "__main__":
     with tempfile.TemporaryDirectory() as temporary:
         for each in GALLERY:
             draw(each, Path(temporary))
-        film(Path(temporary))
+        photograph_report(film(Path(temporary)))

@@ -1,6 +1,14 @@
 """The pictures of the viewer in the documentation: which run, which moment, which camera."""
 
 from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from uvms_bringup.viewer.describe import describe
+from uvms_bringup.viewer.elements import world_pose
+from uvms_bringup.viewer.log_source import LogSource
+from uvms_bringup.viewer.scene_model import SceneModel
 
 ROCKS = (
     "obstacles=[{name: rock, sphere: {center_m: [2.6, -0.5, 11.2], radius_m: 0.5}},"
@@ -43,5 +51,24 @@ GALLERY = (
     Shot("thruster", "arm_swing", 16.0, 14.0, "chase", (DEAD,)),
     Shot("bluerov2", "hover", 6.0, 6.0, "wide", (), "bluerov2_alpha5"),
 )
-MOVIE = Shot("swing", "arm_swing", 52.0, 0.0, "wide")
-MOVIE_SPEED = 5.2
+MOVIE = Shot("swing", "arm_swing", 52.0, 0.0, "bow")
+MOVIE_SPEED = 6.5
+MOVIE_TOLD_S = 0.0, 13.0, 23.0, 36.0
+"""Moments of the movie that its description has."""
+
+
+def movie_told(source: LogSource) -> dict[str, Any]:
+    """What the movie of a run shows at some moments, as `describe` tells of a picture, and the arm.
+
+    Of the arm it is the places of its links and tool, in map_ned.
+    """
+    model, shown = SceneModel(source.setting), {}
+    for time in MOVIE_TOLD_S:
+        moment = source.moment(time)
+        told = describe(model, moment, MOVIE.camera)["shown"]
+        places = model.all_places(moment)
+        for name in (*model.estimated.links, model.estimated.tool):
+            told[name] = ["frame", "", np.round(world_pose(name, places)[0], 3).tolist()]
+        shown |= {f"{time:g} s: {name}": what for name, what in told.items()}
+    first = describe(model, source.moment(MOVIE_TOLD_S[0]), MOVIE.camera)
+    return {"speed": MOVIE_SPEED, "camera": first["camera"], "shown": shown}

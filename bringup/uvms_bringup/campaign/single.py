@@ -38,6 +38,10 @@ def summary_of(scenario: Scenario) -> dict[str, Any]:
     built = as_built(vehicle, scenario.plant, scenario.seed)
     end = ending.record(scenario.duration_s, stopped_by)
     log = writer.log(
-        run_records(scenario, built, str(Pace())), effective_values(scenario), path_of(goal), end
+        run_records(scenario, built, str(Pace())),
+        effective_values(scenario),
+        path_of(goal),
+        end,
+        built.vehicle if built.differs else None,
     )
     return summarise(log, wall_s=clock.run_s)

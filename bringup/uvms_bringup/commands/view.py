@@ -19,7 +19,7 @@ EPILOG = """examples:
 Colours: solid is the estimate, the ghost the truth; the red ball is port, the green one starboard;
 thrust arrows go from green to red at their limit."""
 
-CAMERAS = ("wide", "chase", "tool", "top")
+CAMERAS = ("wide", "bow", "chase", "tool", "top")
 
 
 def add_arguments(parser: ArgumentParser) -> None:
@@ -47,6 +47,12 @@ def add_arguments(parser: ArgumentParser) -> None:
     add("--camera", choices=CAMERAS, default="wide", help="of picture and movie (default: wide)")
     add("--host", default="127.0.0.1", help="address of the page (default: this machine alone)")
     add("--port", type=int, default=8080, help="port of the page (default 8080; the next free one)")
+    add(
+        "--quality",
+        choices=("auto", "high", "low"),
+        default="auto",
+        help="of the page; low: no smooth edges, faster (default: low where a processor draws)",
+    )
     add("--no-browser", action="store_true", help="print the address, open no browser")
 
 

@@ -55,6 +55,15 @@ class Push:
 
 
 @dataclass(frozen=True)
+class Battery:
+    """What a battery has left and what is taken from it."""
+
+    share: float  # of its charge, 0 to 1; NaN where it is not known
+    voltage: float  # V
+    power: float  # W, that is taken
+
+
+@dataclass(frozen=True)
 class Health:
     """The worst that a node has said about itself: its level, its name and its text."""
 
@@ -79,6 +88,7 @@ class Measured:
     restoring: Push | None = None
     coupling: Push | None = None
     external: Push | None = None
+    battery: Battery | None = None
     health: Health | None = None
     events: tuple[tuple[float, str], ...] = ()  # time, s, and text; the last ones
 

@@ -1,13 +1,20 @@
 """A glance as one plain line, for files, pipes and terminals without colours."""
 
 from uvms_bringup.terminal.glance import Bounded, Glance, Measured
-from uvms_bringup.terminal.words import EXCEEDED, NOTHING, pace_text, time_text, value_text
+from uvms_bringup.terminal.words import (
+    EXCEEDED,
+    NOTHING,
+    battery_text,
+    pace_text,
+    time_text,
+    value_text,
+)
 
 GAP = "  "
 
 
 def line(glance: Glance) -> str:
-    """Time, pace, phase, tool, roll and pitch, thrusters at their limits, health."""
+    """Time, pace, phase, tool, roll, pitch, battery, thrusters at their limits, health."""
     own = glance.measured
     parts = [
         f"{time_text(glance):>14}",
@@ -16,6 +23,7 @@ def line(glance: Glance) -> str:
         f"tool {_value(own.tool)}",
         f"roll {_value(own.roll)}",
         f"pitch {_value(own.pitch)}",
+        *_battery(own),
         *_saturated(own),
         f"health {NOTHING if own.health is None else own.health.words}",
     ]
@@ -24,6 +32,10 @@ def line(glance: Glance) -> str:
 
 def _value(bounded: Bounded) -> str:
     return value_text(bounded) + EXCEEDED * bounded.is_exceeded
+
+
+def _battery(measured: Measured) -> list[str]:
+    return [] if measured.battery is None else [f"battery {battery_text(measured.battery)}"]
 
 
 def _saturated(measured: Measured) -> list[str]:

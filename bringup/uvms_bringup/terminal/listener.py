@@ -7,7 +7,7 @@ import numpy as np
 
 from uvms_analysis.happened import events_in
 from uvms_analysis.limits import END_EFFECTOR
-from uvms_bringup.terminal.glance import Bounded, Health, Measured, Push, Thruster
+from uvms_bringup.terminal.glance import Battery, Bounded, Health, Measured, Push, Thruster
 from uvms_bringup.viewer.log_source import AGE_S, PLAN_AGE_S, plan_of, posture_of, thrusts_of
 from uvms_bringup.viewer.moment import tool_pose
 from uvms_core import diagnostics, topics
@@ -16,7 +16,7 @@ from uvms_core.diagnostics import Status
 from uvms_core.errors import UvmsError
 from uvms_core.messages import from_message
 from uvms_core.rotations import quat_to_rpy
-from uvms_core.signals import Array, to_nanoseconds, to_seconds
+from uvms_core.signals import Array, BatteryState, to_nanoseconds, to_seconds
 from uvms_core.topic import Topic
 from uvms_core.vehicle import Vehicle
 from uvms_planner.config import LimitsConfig
@@ -27,8 +27,11 @@ HEARD = (
     topics.APPLIED_THRUST,
     topics.ALLOCATION,
     topics.DISTURBANCE_BUDGET,
+    topics.BATTERY_STATE,
 )
 """Their newest messages are decoded when somebody looks, far less often than they come."""
+BATTERY_AGE_S = 2.5 * topics.BATTERY_PERIOD_S
+"""The battery is heard once a second."""
 REFERENCES = 8
 """References are stamped ahead: of so many the newest that has begun counts."""
 EVENTS = 3
@@ -65,7 +68,10 @@ class Listener:
             self._unread.append(data)
 
     def measured(self, stamp: int) -> Measured:
-        """What is known at a stamp in ns; what is older than a second counts no more."""
+        """What is known at a stamp in ns; what is older than a second counts no more.
+
+        Of the battery, what is older than `BATTERY_AGE_S`.
+        """
         self._read_statuses()
         said = self._said(stamp)
         odometry, budget = (
@@ -80,13 +86,17 @@ class Listener:
             restoring=None if budget is None else _push(budget.restoring),
             coupling=None if budget is None else _push(budget.coupling),
             external=None if budget is None else _push(budget.external),
+            battery=_battery(said.get(topics.BATTERY_STATE.name)),
             health=self._health(said),
             events=tuple(self._events),
         )
 
     def _said(self, stamp: int) -> dict[str, Any]:
-        oldest = stamp - to_nanoseconds(AGE_S)
-        fresh = ((name, data) for name, (at, data) in self._newest.items() if at >= oldest)
+        fresh = (
+            (name, data)
+            for name, (at, data) in self._newest.items()
+            if at >= stamp - to_nanoseconds(_age_s(self._names[name]))
+        )
         decoded = ((self._names[name], _decoded(self._names[name], data)) for name, data in fresh)
         return {topic.name: signal for topic, signal in decoded if signal is not None}
 
@@ -142,6 +152,14 @@ def _decoded(topic: Topic, data: bytes) -> Any:
         return from_message(topic, codec(topic.type).decode(data))
     except UvmsError:
         return None
+
+
+def _age_s(topic: Topic) -> float:
+    return BATTERY_AGE_S if topic is topics.BATTERY_STATE else AGE_S
+
+
+def _battery(said: BatteryState | None) -> Battery | None:
+    return None if said is None else Battery(said.percentage, said.voltage, said.power)
 
 
 def _number(value: float | None) -> float | None:

@@ -11,6 +11,7 @@ from rich.text import Text
 from uvms_bringup.terminal import words
 from uvms_bringup.terminal.glance import Bounded, Glance, Health, Thruster
 from uvms_core import diagnostics
+from uvms_core.battery import LOW
 
 LEAST_COLUMNS = 40
 """A narrower terminal gets lines."""
@@ -77,6 +78,9 @@ def _state_rows(glance: Glance, width: int, block: str) -> Iterator[Row]:
     yield "tool off", _bounded(own.tool)
     yield "roll", _bounded(own.roll)
     yield "pitch", _bounded(own.pitch)
+    if own.battery is not None:
+        low = own.battery.share < LOW
+        yield "battery", Text(words.battery_text(own.battery), style=BAD if low else "")
     yield "restoring", Text(words.push_text(own.restoring))
     yield "coupling", Text(words.push_text(own.coupling))
     yield "external", Text(words.push_text(own.external))

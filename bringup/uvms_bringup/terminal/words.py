@@ -1,7 +1,8 @@
 """The values of a glance as text with their units, the same in the panel and in the lines."""
 
 from uvms_bringup.campaign.progress import clock
-from uvms_bringup.terminal.glance import Bounded, Glance, Push, Thruster
+from uvms_bringup.terminal.glance import Battery, Bounded, Glance, Push, Thruster
+from uvms_core.battery import LOW
 
 NOTHING = "-"
 """In the place of a value that has not come."""
@@ -42,6 +43,14 @@ def value_text(bounded: Bounded) -> str:
 def push_text(push: Push | None) -> str:
     """Force and moment."""
     return NOTHING if push is None else f"{push.force:.2f} N, {push.moment:.2f} N m"
+
+
+def battery_text(battery: Battery) -> str:
+    """Share of the charge, voltage and power, marked where it is low."""
+    mark = f" {EXCEEDED}" if battery.share < LOW else ""
+    share = NOTHING if battery.share != battery.share else f"{battery.share:.1%}"
+    power = NOTHING if battery.power != battery.power else f"{battery.power + 0.0:.0f} W"
+    return f"{share}, {battery.voltage:.1f} V, {power}{mark}"
 
 
 def thrust_text(thruster: Thruster) -> str:

@@ -8,11 +8,14 @@ from uvms_bringup.viewer.elements import Places, world_pose
 from uvms_bringup.viewer.scene_model import SceneModel
 from uvms_core.signals import Array
 
-CHASE, TOOL, TOP, WIDE, FREE = "chase", "tool", "top", "wide", "free"
-PRESETS = (WIDE, CHASE, TOOL, TOP, FREE)
+CHASE, TOOL, TOP, WIDE, BOW, FREE = "chase", "tool", "top", "wide", "bow", "free"
+PRESETS = (WIDE, BOW, CHASE, TOOL, TOP, FREE)
 """What the page offers; `free` stays where the mouse puts it."""
+FOLLOWING = CHASE, TOOL
+"""These go along with what they look at; the others stay."""
 _BACK = {
     WIDE: (-0.9, 1.3, -0.8),
+    BOW: (0.95, 1.12, -0.66),
     CHASE: (-1.6, 0.0, -0.6),
     TOOL: (0.35, 0.5, -0.25),
     TOP: (-0.001, 0.0, -2.2),

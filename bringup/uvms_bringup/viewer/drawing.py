@@ -15,6 +15,9 @@ NO_LINE = np.zeros((1, 2, 3))
 SKY, DEEP = (255, 255, 255), (150, 165, 175)
 """Colours of the light from above and from below."""
 UP = (0.0, 0.0, -1.0)
+LINE_PX = 2.0
+"""Width of a line on the screen, from wherever one looks: a line as thick as it is in the world
+fades with distance, and takes a computer without a graphics card as long as the vehicle."""
 BRIGHT = 1.6
 """Strength of it, beside viser's own lamp."""
 
@@ -40,12 +43,13 @@ class Drawing:
         nodes: by name, parents before their children.
         still: those whose places never change; they are drawn together where they can be, and
             cannot be switched off one by one.
+        line_m: width of a line that is drawn `LINE_PX` wide, m.
     """
 
     def __init__(
-        self, scene: viser.SceneApi, nodes: dict[str, Node], still: Collection[str] = ()
+        self, scene: viser.SceneApi, nodes: dict[str, Node], still: Collection[str], line_m: float
     ) -> None:
-        self._scene = scene
+        self._scene, self._line_m = scene, line_m
         scene.set_up_direction("-z")
         joined, gone = batches(nodes, nodes.keys() - still)
         self._handles = {name: self._add(nodes[name]) for name in nodes if name not in gone}
@@ -86,10 +90,10 @@ class Drawing:
         if node.look is None:
             return self._scene.add_frame(name, show_axes=False, **common)
         if node.look.kind == "line":
-            colour, width = _rgb(node.look.colour), float(place.size[0])
             return self._scene.add_line_segments(
-                name, _segments(place), colour, thickness=width, **common
-            )
+                name, _segments(place), _rgb(node.look.colour), thickness=self._pixels(place),
+                thickness_units="screen", **common,
+            )  # fmt: skip
         shape = unit_mesh(node.look.kind)
         handle = self._add_mesh(name, node.look, *shape, scale=_scale(place), **common)
         if node.label:
@@ -119,11 +123,14 @@ class Drawing:
             if now.points is not before.points:
                 handle.points = _segments(now).astype(np.float32)
             if now.size[0] != before.size[0]:
-                handle.thickness = float(now.size[0])
+                handle.thickness = self._pixels(now)
         elif not np.array_equal(now.size, before.size):
             handle.scale = _scale(now)
         if now.colour is not None and now.colour != before.colour:
             handle.color = _rgb(now.colour)
+
+    def _pixels(self, line: Place) -> float:
+        return LINE_PX * float(line.size[0]) / self._line_m
 
 
 def _wxyz(place: Place) -> Array:

@@ -1,8 +1,7 @@
 """One file to share: the scene with its motion in a page that needs neither server nor network."""
 
 from collections.abc import Iterator
-from contextlib import contextmanager, redirect_stdout
-from io import StringIO
+from contextlib import contextmanager
 from itertools import pairwise
 from pathlib import Path
 
@@ -12,9 +11,9 @@ import viser
 from uvms_bringup.errors import ViewError
 from uvms_bringup.viewer.cameras import WIDE, view_of
 from uvms_bringup.viewer.drawing import Drawing, light
+from uvms_bringup.viewer.front_page import quiet_server, stop_quietly, with_ours
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.scene_model import SceneModel
-from uvms_bringup.viewer.shared_plots import with_plots
 
 FRAMES = 1500
 """At most, evenly over the run: a run of 900 s then takes some 10 MB."""
@@ -36,7 +35,7 @@ def export(source: LogSource, file: str | Path, frames: int = FRAMES) -> Path:
         path.touch()  # before the work, which takes its time
         times = frame_times(source.start_s, source.end_s, frames)
         over = source.overview
-        page = with_plots(_recorded(source, times), over.times, over.plots())
+        page = with_ours(_recorded(source, times), over.times, over.plots())
         path.write_text(page, encoding="utf-8")
     except OSError as fault:
         raise ViewError(f"{path}: cannot be written: {fault.strerror}") from fault
@@ -55,7 +54,7 @@ def _recorded(source: LogSource, times: np.ndarray) -> str:
     with scene_server() as server:
         places = model.all_places(source.moment(float(times[0])))
         light(server.scene)
-        drawing = Drawing(server.scene, model.nodes, model.still)
+        drawing = Drawing(server.scene, model.nodes, model.still, model.line_m)
         drawing.show(places)
         view = view_of(WIDE, model, places)
         server.initial_camera.position = view.position
@@ -85,15 +84,3 @@ def scene_server() -> Iterator[viser.ViserServer]:
         yield server
     finally:
         stop_quietly(server)
-
-
-def quiet_server(host: str, port: int, title: str) -> viser.ViserServer:
-    """A server of viser without its banner."""
-    with redirect_stdout(StringIO()):
-        return viser.ViserServer(host, port, title, verbose=False)
-
-
-def stop_quietly(server: viser.ViserServer) -> None:
-    """End a server without its message."""
-    with redirect_stdout(StringIO()):
-        server.stop()

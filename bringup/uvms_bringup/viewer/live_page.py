@@ -8,8 +8,9 @@ import numpy as np
 
 from uvms_bringup.viewer.drawing import Drawing
 from uvms_bringup.viewer.elements import Look, Node, Place
+from uvms_bringup.viewer.front_page import viser_page, with_ours
 from uvms_bringup.viewer.moment import Moment, tool_pose
-from uvms_bringup.viewer.page import FRAME_S, HOST, Page
+from uvms_bringup.viewer.page import FRAME_S, Page, Site
 from uvms_bringup.viewer.preview import Preview, preview, straight_goal, tool_now
 from uvms_bringup.viewer.scene_model import LINE, SceneModel, Setting
 from uvms_bringup.viewer.vehicle_body import VehicleBody
@@ -57,17 +58,17 @@ class Graph(Protocol):
 class LivePage(Page):
     """A graph on a page."""
 
-    def __init__(self, graph: Graph, host: str = HOST, port: int = 8080) -> None:
+    def __init__(self, graph: Graph, site: Site) -> None:
         first = graph.moment()
         model = SceneModel(_setting(graph, first))
-        super().__init__(model, first, host, port, "UVMS: live")
+        super().__init__(model, first, site, "UVMS: live", with_ours(viser_page()))
         self.graph = graph
-        self._ghost = VehicleBody(graph.vehicle, PLANNED, 0.3, lights=False)
+        self._ghost = VehicleBody(graph.vehicle, PLANNED, 0.3, details=False)
         width = np.full(3, 2.0 * LINE * model.size)
         line = Node(LINE_NAME, Look("line", GREEN), Place(size=width, visible=False))
         self._width = width
         nodes = {node.name: node for node in (*self._ghost.nodes, line)}
-        self._plan = Drawing(self.server.scene, nodes, self._ghost.still)
+        self._plan = Drawing(self.server.scene, nodes, self._ghost.still, model.line_m)
         self._plan.show({PLANNED: Place(visible=False)})
         self.preview: Preview | None = None
         self._goal: PathGoal | None = None

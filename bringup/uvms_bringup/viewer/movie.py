@@ -1,21 +1,29 @@
 """Movies of a run without browser: GIF, or MP4 by the ffmpeg that a package brings along."""
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
 from PIL import Image
 
 from uvms_bringup.errors import ViewError
+from uvms_bringup.viewer.cameras import FOLLOWING, View, view_of
 from uvms_bringup.viewer.log_source import LogSource
-from uvms_bringup.viewer.picture import picture
+from uvms_bringup.viewer.moment import Moment
+from uvms_bringup.viewer.picture import DEEP, SKY, picture
 from uvms_bringup.viewer.scene_model import SceneModel
+from uvms_core.signals import Array
 
 SIZE = (640, 360)
-RATES = {".gif": 10, ".mp4": 25}
+RATES = {".gif": 8, ".mp4": 25}
 """Frames a second by the file's suffix."""
+COLOURS = 128
+"""Of a GIF, whose background is of one: a slow change of colour would be steps in it."""
 PALETTE_FRAMES = 6
 """From which the colours of a GIF are taken, evenly over it."""
+LOOKS, STAYS = 30, 0.5
+"""How often it is asked where the vehicle is, and how far it may go, in diagonals of its hull,
+while the camera stands still, which makes a movie calm and a GIF small."""
 LONGEST_S = 10.0
 """Of a movie for which no speed is asked: the run is played so much faster."""
 
@@ -45,8 +53,8 @@ def write_movie(
         path.touch()  # before the work, which takes its time
         if path.suffix == ".gif":
             few = times[:: max(len(times) // PALETTE_FRAMES, 1)]
-            palette = _palette(list(_frames(source, few, preset)))
-            _write_gif(path, _frames(source, times, preset), rate, palette)
+            palette = _palette(list(_frames(source, few, preset, SKY)))
+            _write_gif(path, _frames(source, times, preset, SKY), rate, palette)
         else:
             _write_mp4(path, _frames(source, times, preset), rate)
     except OSError as fault:
@@ -54,10 +62,23 @@ def write_movie(
     return path
 
 
-def _frames(source: LogSource, times: np.ndarray, preset: str) -> Iterator[Image.Image]:
+def _frames(
+    source: LogSource, times: np.ndarray, preset: str, deep: Array = DEEP
+) -> Iterator[Image.Image]:
     model = SceneModel(source.setting)
+    view = preset if preset in FOLLOWING else held(source.moment, model, times, preset)
     for time in times:
-        yield picture(model, source.moment(float(time)), preset, source.name, SIZE)
+        yield picture(model, source.moment(float(time)), view, source.name, SIZE, deep)
+
+
+def held(
+    moment: Callable[[float], Moment], model: SceneModel, times: np.ndarray, preset: str
+) -> View | str:
+    """The view at the first time where the vehicle stays about there, else one that follows."""
+    few = times[:: max(len(times) // LOOKS, 1)]
+    views = [view_of(preset, model, model.all_places(moment(float(time)))) for time in few]
+    gone = max(float(np.linalg.norm(view.look_at - views[0].look_at)) for view in views)
+    return views[0] if gone < STAYS * model.diagonal else preset
 
 
 def _palette(frames: list[Image.Image]) -> Image.Image:
@@ -66,7 +87,7 @@ def _palette(frames: list[Image.Image]) -> Image.Image:
     An octree keeps those of small things, such as the side lights.
     """
     joined = Image.fromarray(np.vstack([np.asarray(frame) for frame in frames]))
-    return joined.quantize(256, Image.Quantize.FASTOCTREE)
+    return joined.quantize(COLOURS, Image.Quantize.FASTOCTREE)
 
 
 def _write_gif(path: Path, frames: Iterator[Image.Image], rate: int, palette: Image.Image) -> None:

@@ -2,17 +2,24 @@
 
 import time as clock
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import viser
 
-from uvms_bringup.viewer.cameras import FREE, PRESETS, WIDE, view_of
+from uvms_bringup.viewer.cameras import FOLLOWING, FREE, PRESETS, WIDE, view_of
 from uvms_bringup.viewer.drawing import Drawing, light
 from uvms_bringup.viewer.elements import Places
-from uvms_bringup.viewer.export import quiet_server, stop_quietly
+from uvms_bringup.viewer.front_page import (
+    AUTO,
+    CHOICE,
+    own_server,
+    stop_quietly,
+    viser_page,
+    with_ours,
+)
 from uvms_bringup.viewer.log_source import LogSource
 from uvms_bringup.viewer.moment import Moment, tool_pose
 from uvms_bringup.viewer.player import SPEEDS, Player
-from uvms_bringup.viewer.plots_panel import PlotsPanel
 from uvms_bringup.viewer.scene_model import SceneModel
 
 FRAME_S = 1.0 / 30.0
@@ -36,16 +43,27 @@ LAYERS = {
 """Switches of the page, and what the names of their nodes begin with."""
 
 
+@dataclass(frozen=True)
+class Site:
+    """Where a page is served, and the quality that its address asks for."""
+
+    host: str = HOST
+    port: int = 8080
+    quality: str = AUTO
+
+
 class Page:
     """A scene on a page in the browser, whoever says what happens in it."""
 
-    def __init__(self, model: SceneModel, first: Moment, host: str, port: int, title: str) -> None:
-        self.model = model
-        self.server = quiet_server(host, port, title)
+    def __init__(
+        self, model: SceneModel, first: Moment, site: Site, title: str, front: str
+    ) -> None:
+        self.model, self._quality = model, site.quality
+        self.server, self._folder = own_server(front, site.host, site.port, title)
         self.server.gui.configure_theme(show_logo=False, show_share_button=False)
         self.places: Places = model.all_places(first)
         light(self.server.scene)
-        self.drawing = Drawing(self.server.scene, model.nodes, model.still)
+        self.drawing = Drawing(self.server.scene, model.nodes, model.still, model.line_m)
         self.drawing.show(self.places)
         self._presets: dict[int, str] = {}
         view = view_of(WIDE, model, self.places)
@@ -55,11 +73,13 @@ class Page:
     @property
     def address(self) -> str:
         """Where the page is."""
-        return f"http://{self.server.get_host()}:{self.server.get_port()}"
+        query = "" if self._quality == AUTO else f"/?quality={self._quality}"
+        return f"http://{self.server.get_host()}:{self.server.get_port()}{query}"
 
     def close(self) -> None:
         """End the server."""
         stop_quietly(self.server)
+        self._folder.cleanup()
 
     def look_from(self, preset: str) -> None:
         """Put the cameras of everybody who looks to a preset."""
@@ -87,6 +107,7 @@ class Page:
                     names = [name for name in names if "/" not in name]
                 if names:
                     self._switch(title, names)
+            self.server.gui.add_html(CHOICE)
 
     def _switch(self, title: str, names: list[str]) -> None:
         box = self.server.gui.add_checkbox(title, True)
@@ -99,7 +120,7 @@ class Page:
             self.drawing.show(moved)
         for client in self.server.get_clients().values():
             preset = self._presets.get(client.client_id, FREE)
-            if preset in ("chase", "tool"):
+            if preset in FOLLOWING:
                 self._look(client, preset)
 
     def _look(self, client: viser.ClientHandle, preset: str) -> None:
@@ -114,18 +135,16 @@ class Page:
 class LogPage(Page):
     """A log on a page, with its time line and plots."""
 
-    def __init__(self, source: LogSource, host: str = HOST, port: int = 8080) -> None:
-        first = source.moment(source.start_s)
-        super().__init__(SceneModel(source.setting), first, host, port, f"UVMS: {source.name}")
+    def __init__(self, source: LogSource, site: Site) -> None:
+        first, over = source.moment(source.start_s), source.overview
+        front = with_ours(viser_page(), over.times, over.plots())
+        super().__init__(SceneModel(source.setting), first, site, f"UVMS: {source.name}", front)
         self.source = source
         self.player = Player(source.start_s, source.end_s, source.start_s)
         self._drawn, self._told = (source.start_s, False), 0.0
         self._add_time_line()
         self.add_cameras()
         self.add_switches()
-        over = source.overview
-        self._plots = PlotsPanel(self.server.gui, over.times, over.plots())
-        self._plots.show(self.player.time)
 
     def serve(self, stopped: Callable[[], bool] = lambda: False) -> None:
         """Play until stopped."""
@@ -151,7 +170,6 @@ class LogPage(Page):
 
     def _tell(self, moment: Moment) -> None:
         """Bring the panels up to a moment."""
-        self._plots.show(moment.time)
         self._slider.value = moment.time  # type: ignore[misc]  # viser assigns by __setattr__
         self._play.label = "Pause" if self.player.playing else "Play"
         self._status.content = status_text(self.source, moment)

@@ -49,13 +49,18 @@ def write_picture(
 
 
 def picture(
-    model: SceneModel, moment: Moment, preset: str, title: str, size: tuple[int, int]
-) -> Image.Image:
-    """A moment from a preset of the camera, with title and time."""
+    model: SceneModel, moment: Moment, preset: str | View, title: str, size: tuple[int, int],
+    deep: Array = DEEP,
+) -> Image.Image:  # fmt: skip
+    """A moment from a preset of the camera or a view, with title and time.
+
+    The background goes from `SKY` above to the colour `deep` (3,) below.
+    """
     places = model.all_places(moment)
     fine = (size[0] * FINER, size[1] * FINER)
-    camera = camera_of(view_of(preset, model, places), fine)
-    pixels = shrink(_image(model.nodes, places, camera), FINER)
+    view = view_of(preset, model, places) if isinstance(preset, str) else preset
+    camera = camera_of(view, fine)
+    pixels = shrink(_image(model.nodes, places, camera, deep), FINER)
     image = Image.fromarray(np.rint(255.0 * pixels).astype(np.uint8))
     font = ImageFont.load_default(size[1] / 32)
     text = f"{title}   {moment.time:.1f} s"
@@ -74,7 +79,7 @@ def camera_of(view: View, size: tuple[int, int]) -> Camera:
     return Camera(view.position, R, float(focal), size)
 
 
-def _image(nodes: dict[str, Node], places: Places, camera: Camera) -> np.ndarray:
+def _image(nodes: dict[str, Node], places: Places, camera: Camera, deep: Array) -> np.ndarray:
     """(h, w, 3), 0 to 1: what is opaque, and before it what is not."""
     by_opacity: dict[float, list[Shape]] = {1.0: []}
     for name, node in nodes.items():
@@ -87,12 +92,12 @@ def _image(nodes: dict[str, Node], places: Places, camera: Camera) -> np.ndarray
         layer = render(shapes, camera, LIGHT, opacity)
         layer.depth[layer.depth > solid.depth] = np.inf
         layers.append(layer)
-    return blend(layers, _background(camera.size))
+    return blend(layers, _background(camera.size, deep))
 
 
-def _background(size: tuple[int, int]) -> np.ndarray:
+def _background(size: tuple[int, int], deep: Array) -> np.ndarray:
     down = np.linspace(0.0, 1.0, size[1])[:, None, None]
-    return np.broadcast_to(SKY + down * (DEEP - SKY), (size[1], size[0], 3))
+    return np.broadcast_to(SKY + down * (deep - SKY), (size[1], size[0], 3))
 
 
 def _is_before(shape: Shape, camera: Camera) -> bool:

@@ -55,17 +55,19 @@ class SceneModel:
         vehicle = setting.vehicle
         self.vehicle = vehicle
         self.estimated = VehicleBody(vehicle, ESTIMATED)
-        self.true = VehicleBody(vehicle, TRUE, GHOST, lights=False)
+        self.true = VehicleBody(vehicle, TRUE, GHOST, details=False)
         self.size = 2.0 * float(self.estimated.size[1].max())
         """Greatest length of the hull, m."""
         self.diagonal = 2.0 * float(np.linalg.norm(self.estimated.size[1]))
         """Of the box around the hull, m."""
+        self.line_m = LINE * self.size
+        """Width of the tool's lines, m."""
         self._views = SensorViews(vehicle, ESTIMATED, self.size)
         greatest = max((item.greatest_n for item in vehicle.thrusters), default=1.0)
         scale = greatest if setting.force_scale_n is None else setting.force_scale_n
         self.pushes = Pushes(vehicle, ESTIMATED, LONGEST * self.size, scale)
         self._world = Surroundings(vehicle, setting.obstacles, self.size, setting.middle)
-        self._paths = ToolPaths(setting.times, setting.travelled, setting.asked, LINE * self.size)
+        self._paths = ToolPaths(setting.times, setting.travelled, setting.asked, self.line_m)
         self.nodes = _by_name(
             (
                 *self._world.nodes,

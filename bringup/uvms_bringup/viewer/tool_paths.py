@@ -1,6 +1,7 @@
 """Where the tool was, is to go and should be: lines, and a ball at the target."""
 
-from itertools import pairwise
+from collections.abc import Iterator
+from dataclasses import replace
 
 import numpy as np
 
@@ -12,9 +13,10 @@ ASKED: Colour = (0.35, 0.40, 0.45)
 TRAVELLED: Colour = (0.91, 0.35, 0.05)
 PLANNED: Colour = (0.10, 0.65, 0.95)
 TARGET: Colour = (0.95, 0.15, 0.60)
-PIECES = 60
+PIECES = 64
 """Of the travelled path, each of which appears when the tool has passed it: drawing the whole path
-again in every frame would fill the shared file."""
+again in every frame would fill the shared file. Whole pairs of pieces are one line, pairs of these
+again, and so on, so that few lines are drawn at a time."""
 
 
 class ToolPaths:
@@ -30,13 +32,15 @@ class ToolPaths:
     def __init__(self, times: Array, travelled: Array, asked: Array | None, width: float) -> None:
         self._width = np.full(3, width)
         marks = np.unique(np.linspace(0, max(len(times) - 1, 0), PIECES + 1).astype(int))
-        pairs = list(pairwise(marks))
-        self._ends = {f"travelled_{n:02d}": times[last] for n, (_, last) in enumerate(pairs)}
+        self._ends = times[marks[1:]]
         self._pieces = {
-            f"travelled_{n:02d}": travelled[first : last + 1]
-            for n, (first, last) in enumerate(pairs)
+            _name(first, last): Place(
+                size=self._width, points=travelled[marks[first] : marks[last] + 1]
+            )
+            for first, last in blocks(len(self._ends))
         }
-        self.nodes = [self._line(name, TRAVELLED, at) for name, at in self._pieces.items()]
+        self._hidden = {name: replace(at, visible=False) for name, at in self._pieces.items()}
+        self.nodes = [Node(name, Look("line", TRAVELLED), at) for name, at in self._hidden.items()]
         if asked is not None:
             self.nodes.append(self._line("asked_path", ASKED, asked, 0.5))
         self.nodes.append(Node("planned_path", Look("line", PLANNED), HIDDEN))
@@ -48,10 +52,9 @@ class ToolPaths:
 
     def places(self, moment: Moment) -> Places:
         """Which pieces are passed, the plan ahead and the target."""
-        found: Places = {}
-        for name, end in self._ends.items():
-            passed = bool(end <= moment.time)
-            found[name] = Place(size=self._width, visible=passed, points=self._pieces[name])
+        passed = int(np.searchsorted(self._ends, moment.time, side="right"))
+        shown = {_name(first, last) for first, last in cover(passed)}
+        found = self._hidden | {name: self._pieces[name] for name in shown}
         target = moment.target
         found["planned_path"] = self._shown(moment.plan, 1.5)
         found["trail"] = self._shown(moment.trail, 1.0)
@@ -62,3 +65,24 @@ class ToolPaths:
         if points is None or len(points) < 2:
             return HIDDEN
         return Place(size=thickness * self._width, points=points)
+
+
+def blocks(count: int) -> Iterator[tuple[int, int]]:
+    """All that `cover` needs for any number of pieces up to a count: first piece and end."""
+    size = 1
+    while size <= count:
+        yield from ((first, first + size) for first in range(0, count - size + 1, size))
+        size *= 2
+
+
+def cover(passed: int) -> Iterator[tuple[int, int]]:
+    """The fewest blocks that are the first so many pieces: one for each 1 of the binary number."""
+    first = 0
+    for power in reversed(range(passed.bit_length())):
+        if passed & (size := 1 << power):
+            yield first, first + size
+            first += size
+
+
+def _name(first: int, last: int) -> str:
+    return f"travelled_{first:02d}_{last:02d}"

@@ -36,20 +36,21 @@ class VehicleBody:
         vehicle: its file.
         root: name of the node.
         opacity: of all its parts; a ghost has less than 1.
-        lights: side lights, too.
+        details: side lights and propellers, too, which a ghost does without.
     """
 
     def __init__(
-        self, vehicle: Vehicle, root: str, opacity: float = 1.0, lights: bool = True
+        self, vehicle: Vehicle, root: str, opacity: float = 1.0, details: bool = True
     ) -> None:
         self.root = root
         self._vehicle, self._opacity = vehicle, opacity
         self.size = hull_size(vehicle)
         self.links = [f"{root}/link_{number}" for number in range(len(vehicle.arm.links))]
         self.tool = f"{root}/tool"
-        self.propellers = [f"{root}/thruster_{item.name}/propeller" for item in vehicle.thrusters]
+        turning = vehicle.thrusters if details else ()
+        self.propellers = [f"{root}/thruster_{item.name}/propeller" for item in turning]
         self.nodes = [Node(root), *self._hull(), *self._thrusters(), *self._arm()]
-        if lights:
+        if details:
             self.nodes += self._lights()
         moving = {root, *self.links, self.tool, *self.propellers}
         self.still = {node.name for node in self.nodes} - moving
@@ -68,7 +69,7 @@ class VehicleBody:
         found = {self.root: Place(posture.position, posture.quaternion)}
         found |= {name: place_of(pose) for name, pose in zip(self.links, frames[1:], strict=True)}
         found[self.tool] = place_of(tool)
-        if turned is not None:
+        if turned is not None and self.propellers:
             for name, angle in zip(self.propellers, 0.5 * turned, strict=True):
                 found[name] = Place(quaternion=np.array([0.0, 0.0, np.sin(angle), np.cos(angle)]))
         return found
@@ -112,7 +113,9 @@ class VehicleBody:
             middle = np.array([0.0, 0.0, 0.5 * (first + last)])
             size = np.array([THRUSTER_RADIUS_M, THRUSTER_RADIUS_M, 0.5 * (last - first)])
             yield self._node(f"{name}/duct", "cylinder", (middle, np.eye(3)), size, DARK)
-            yield Node(f"{self.root}/{name}/propeller")
+            if (propeller := f"{self.root}/{name}/propeller") not in self.propellers:
+                continue
+            yield Node(propeller)
             for number, (x, y) in enumerate(((0, 1), (1, 0))):
                 half = np.array([BLADE_M[x], BLADE_M[y], BLADE_M[2]])
                 behind = np.array([0.0, 0.0, first - 2.0 * BLADE_M[2]])

@@ -1,7 +1,6 @@
 """What a run cost: load of the thrusters, authority left, impulse, and mechanical work.
 
-Electrical energy is not here: neither the vehicle file nor the log says how much current a thrust
-or a torque takes.
+Electrical energy is in `energy`.
 """
 
 from collections.abc import Sequence

@@ -10,6 +10,7 @@ from uvms_analysis.analysis import Analysis
 from uvms_analysis.check import check_log
 from uvms_analysis.clearance import NOTHING, least_clearances
 from uvms_analysis.counters import node_counters
+from uvms_analysis.energy import BATTERY, ENERGY, battery, energy
 from uvms_analysis.errors import LogError, determine
 from uvms_analysis.goals_of import goals_of
 from uvms_analysis.happened import events_of, not_reached
@@ -35,6 +36,7 @@ LOADED = (
     topics.ALLOCATION,
     topics.APPLIED_THRUST,
     topics.STABILITY,
+    topics.BATTERY_STATE,
     *topics.GAPS,
     topics.DIAGNOSTICS,
 )
@@ -104,6 +106,8 @@ def summarise(log: str | Path | RunLog, *, wall_s: float | None) -> dict[str, An
         "lockstep_timeouts": figures.of("lockstep_timeouts", lambda: run.lockstep_timeouts),
     }
     summary |= _precision(run, figures) | _effort(run, figures)
+    summary["energy"] = figures.of("energy", lambda: energy(run), dict.fromkeys(ENERGY))
+    summary["battery"] = figures.of("battery", lambda: battery(run), dict.fromkeys(BATTERY))
     summary["goals"] = figures.of("goals", lambda: goals_of(run), [])
     summary["clearance_m"] = figures.of(
         "clearance_m", lambda: least_clearances(run), {**NOTHING, "planned": NOTHING}

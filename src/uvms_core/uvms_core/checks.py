@@ -8,6 +8,7 @@ does not check it again: it looks only at stamps, and at sizes against its own v
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache, lru_cache
+from itertools import chain
 from math import isfinite
 from operator import attrgetter
 from typing import Any, NamedTuple, TypeVar, get_type_hints
@@ -66,7 +67,7 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     checked = getattr(signal, _MARK, False)
     if checked and not names:
         return
-    if not checked and not names and _is_certainly_good(signal):
+    if not checked and not names and _are_certainly_good((signal,)):
         trust(signal)
         return
     kind: Any = type(signal)
@@ -88,25 +89,22 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
                 raise _wrong_shape(f"{name}.{field}", value, rule, sizes, names)
 
 
+def trust_good(signals: Sequence[Any]) -> None:
+    """Mark signals as checked if they are of one kind, and all of them certainly are good.
+
+    `check` then has little to do; where they are not marked it says what is wrong.
+    """
+    if signals and not getattr(signals[0], _MARK, False) and _are_certainly_good(signals):
+        trust_all(tuple(signals))
+
+
 def well_formed(signal: Any) -> tuple[Array, ...] | None:
     """The values of the fields that have a rule, if their form certainly is as it must be.
 
     Types, shapes and unit lengths, that is; whether the numbers are finite is for the caller to
     see. Quick; None where only `check` can tell.
     """
-    kind: Any = type(signal)
-    layout = _layout(kind)
-    if layout is None:
-        return None
-    values: tuple[Array, ...] = layout.get(signal)
-    if list(map(type, values)) != layout.types or list(map(_DTYPE, values)) != layout.dtypes:
-        return None
-    if not _fit_together(kind, tuple(map(_SHAPE, values))):
-        return None
-    for index in layout.units:
-        if not is_unit(values[index].dot(values[index])):
-            return None
-    return values
+    return _well_formed((signal,))
 
 
 def checked_fields(kind: type) -> tuple[str, ...]:
@@ -188,20 +186,40 @@ def _layout(kind: type) -> _Layout | None:
 
 @lru_cache(maxsize=256)
 def _fit_together(kind: type, shapes: tuple[tuple[int, ...], ...]) -> bool:
-    """Whether a signal's shapes are as its rules say; the few that occur are kept."""
+    """Whether shapes of signals in a row are as their rules say; the few that occur are kept."""
     sizes: dict[str, int] = {}
-    rules = (rule for _, rule in _fields(kind)[0])
+    fields = _fields(kind)[0]
+    rules = [rule for _, rule in fields] * (len(shapes) // len(fields))
     return all(_fits(shape, rule, sizes) for shape, rule in zip(shapes, rules, strict=True))
 
 
-def _is_certainly_good(signal: Any) -> bool:
-    values = well_formed(signal)
+def _well_formed(signals: Sequence[Any]) -> tuple[Array, ...] | None:
+    """As `well_formed`, of several signals in a row; None as well where they are unlike."""
+    kind: Any = type(signals[0])
+    count = len(signals)
+    layout = _layout(kind)
+    if layout is None or (count > 1 and set(map(type, signals)) != {kind}):
+        return None
+    values: tuple[Array, ...] = tuple(chain.from_iterable(map(layout.get, signals)))
+    if list(map(type, values)) != count * layout.types:
+        return None
+    if list(map(_DTYPE, values)) != count * layout.dtypes:
+        return None
+    if not _fit_together(kind, tuple(map(_SHAPE, values))):
+        return None
+    for index in layout.units:
+        for value in values[index :: len(layout.types)]:
+            if not is_unit(value.dot(value)):
+                return None
+    return values
+
+
+def _are_certainly_good(signals: Sequence[Any]) -> bool:
+    values = _well_formed(signals)
     if values is None:
         return False
-    squared = 0.0
-    for value in values:
-        squared += value.dot(value) if value.ndim == 1 else float(np.vdot(value, value))
-    return isfinite(squared)
+    numbers = np.concatenate(values, axis=None)
+    return isfinite(numbers.dot(numbers))
 
 
 def _is_rule(item: Any) -> bool:

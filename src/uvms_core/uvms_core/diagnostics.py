@@ -26,6 +26,14 @@ class Trouble(NamedTuple):
     text: str
 
 
+def together(*said: tuple[int, str]) -> tuple[int, str]:
+    """The worst level of several, and the texts of all that are not OK; the first where all are."""
+    bad = [each for each in said if each[0] != OK]
+    if not bad:
+        return said[0]
+    return max(level for level, _ in bad), "; ".join(text for _, text in bad)
+
+
 @dataclass(frozen=True)
 class Status:
     """State of one node at a stamp (ns); values are numbers or texts by key (`step_ms`, ...)."""

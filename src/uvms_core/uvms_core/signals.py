@@ -57,6 +57,7 @@ Array6s = Annotated[Array, Shape(("k", 6))]
 Quaternions = Annotated[Array, Shape(("k", 4), unit=True)]
 ByJoints = Annotated[Array, Shape(("k", "n"))]
 NumberWithFix = Annotated[float, OnlyIf("fix")]
+NumberOrNan = Annotated[float, "NaN where it is not known"]
 
 NANOSECONDS = 1_000_000_000
 
@@ -307,6 +308,23 @@ class AppliedThrust:
     joint_command_stamp: int
     thruster_safe: bool
     joint_safe: bool
+
+
+@dataclass(frozen=True)
+class BatteryState:
+    """What a battery has left and what is taken from it."""
+
+    stamp: int
+    voltage: float  # V, at its terminals
+    current: NumberOrNan  # A, mean since the last sample; negative while it is discharged
+    charge: NumberOrNan  # Ah, that are left
+    capacity: NumberOrNan  # Ah, when full
+    percentage: NumberOrNan  # share of the capacity that is left, 0 to 1, as the message has it
+
+    @property
+    def power(self) -> float:
+        """Power that is taken from it, W."""
+        return -self.voltage * self.current
 
 
 BY_THRUSTER = (ThrusterCommand, Allocation, AppliedThrust, DisturbanceBudget)

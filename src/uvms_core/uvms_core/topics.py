@@ -4,8 +4,8 @@ Nodes, recorder, in-process simulation and report all take names and types from 
 relative, so that they fall under the vehicle's namespace; /clock, /tf, /tf_static and /diagnostics
 are global, as everywhere in ROS. docs/signals.md has this table with units and rates.
 
-The constants are those of a vehicle with the built-in sensors; `of` and `nodes` give what a vehicle
-with further sensors has.
+The constants are those of a vehicle with the built-in sensors and a battery; `of` and `nodes` give
+what a vehicle with further sensors, or without a battery, has.
 """
 
 from collections.abc import Iterable, Mapping
@@ -109,6 +109,11 @@ STABILITY = Topic(
 APPLIED_THRUST = Topic(
     "applied_thrust", "uvms_msgs/msg/AppliedThrust", signals.AppliedThrust, BODY_FRAME
 )
+BATTERY_STATE = Topic(
+    "battery_state", "sensor_msgs/msg/BatteryState", signals.BatteryState, BODY_FRAME
+)
+"""Of vehicles whose battery and consumption the vehicle file describes, each `BATTERY_PERIOD_S`."""
+BATTERY_PERIOD_S = 1.0
 TRUE_ODOMETRY = Topic(
     "ground_truth/odometry", "nav_msgs/msg/Odometry", signals.Odometry, WORLD_FRAME, BODY_FRAME
 )
@@ -175,7 +180,7 @@ def sampled_topics(vehicle: Vehicle) -> dict[str, Topic]:
     return {**mounted, ENCODERS: JOINT_STATES, ODOMETRY.name: ODOMETRY}
 
 
-def _all(kinds: Iterable[Sampled]) -> tuple[Topic, ...]:
+def _all(kinds: Iterable[Sampled], battery: bool = True) -> tuple[Topic, ...]:
     return (
         CLOCK,
         *(sensor.topic for sensor in kinds),
@@ -191,6 +196,7 @@ def _all(kinds: Iterable[Sampled]) -> tuple[Topic, ...]:
         ALLOCATION,
         STABILITY,
         APPLIED_THRUST,
+        *_battery(battery),
         TRUE_ODOMETRY,
         TRUE_JOINT_STATES,
         TRUE_DISTURBANCE,
@@ -201,9 +207,13 @@ def _all(kinds: Iterable[Sampled]) -> tuple[Topic, ...]:
     )
 
 
+def _battery(battery: bool) -> tuple[Topic, ...]:
+    return (BATTERY_STATE,) if battery else ()
+
+
 def of(vehicle: Vehicle) -> tuple[Topic, ...]:
     """Every topic of a run with this vehicle, its further sensors' included."""
-    return _all(sensors.mounted_sensors(vehicle))
+    return _all(sensors.mounted_sensors(vehicle), vehicle.battery is not None)
 
 
 ALL = _all(sensors.BUILT_IN)
@@ -225,14 +235,15 @@ def action_of(goal: signals.Goal) -> Action:
     return next(action for action in ACTIONS if isinstance(goal, action.goal))
 
 
-def _nodes(kinds: Iterable[Sampled]) -> dict[str, NodeTopics]:
+def _nodes(kinds: Iterable[Sampled], battery: bool = True) -> dict[str, NodeTopics]:
     kinds = tuple(kinds)
     measured = tuple(sensor.topic for sensor in kinds)
     fused = tuple(sensor.topic for sensor in kinds if sensor.navigation)
     truth = (APPLIED_THRUST, TRUE_ODOMETRY, TRUE_JOINT_STATES, TRUE_DISTURBANCE)
     return {
         PLANT: NodeTopics(
-            (THRUSTER_COMMAND, JOINT_COMMAND), (CLOCK, *measured, JOINT_STATES, *truth)
+            (THRUSTER_COMMAND, JOINT_COMMAND),
+            (CLOCK, *measured, JOINT_STATES, *_battery(battery), *truth),
         ),
         NAVIGATION: NodeTopics((CLOCK, *fused), (ODOMETRY,)),
         DISTURBANCE_OBSERVER: NodeTopics(
@@ -263,7 +274,7 @@ def _nodes(kinds: Iterable[Sampled]) -> dict[str, NodeTopics]:
 
 def nodes(vehicle: Vehicle) -> dict[str, NodeTopics]:
     """What the nodes read and write in a run with this vehicle."""
-    return _nodes(sensors.mounted_sensors(vehicle))
+    return _nodes(sensors.mounted_sensors(vehicle), vehicle.battery is not None)
 
 
 NODES = _nodes(sensors.BUILT_IN)

@@ -50,6 +50,8 @@ def rhythms(contents: Contents) -> Rhythms | None:
     found = {each: Rhythm(tick) for each in topics.of(vehicle) if not each.is_occasional}
     for sensor in mounted_sensors(vehicle):
         found[sensor.topic] = Rhythm(to_nanoseconds(1.0 / sensor.section.rate_hz))
+    if vehicle.battery is not None:
+        found[topics.BATTERY_STATE] = Rhythm(to_nanoseconds(topics.BATTERY_PERIOD_S))
     # At the first step the planner plans two steps ahead, at each of the others one.
     found[topics.REFERENCE] = Rhythm(step, extra=1)
     found |= {topic: Rhythm(0, extra=1) for topic in LATCHED}

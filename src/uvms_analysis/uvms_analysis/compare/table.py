@@ -12,6 +12,10 @@ UNITS = (
     ("_m", "m"),
     ("_deg", "deg"),
     ("_fraction", ""),
+    ("_wh", "Wh"),
+    ("_w", "W"),
+    ("_h", "h"),
+    ("_v", "V"),
 )
 """Ends of names and their units; the first that fits counts."""
 

@@ -16,7 +16,7 @@ from uvms_analysis.errors import LogError
 from uvms_analysis.log import run_end, schema
 from uvms_analysis.log.definition import UNDECODABLE
 from uvms_analysis.log.goal_file import NAME as PATH_FILE
-from uvms_analysis.log.read import RunLog
+from uvms_analysis.log.read import PLANT_VEHICLE, RunLog
 from uvms_analysis.log.records import Entry, Records
 from uvms_analysis.log.run_end import RunEnd
 from uvms_core import topics
@@ -128,6 +128,7 @@ class MemoryWriter:
         configuration: dict[str, Any],
         goal: Any,
         end: RunEnd,
+        plant: Vehicle | None = None,
     ) -> "MemoryLog":
         """The log of what was written.
 
@@ -136,6 +137,7 @@ class MemoryWriter:
             configuration: the scenario as plain data.
             goal: what the planner was asked for.
             end: how the run ended.
+            plant: its own vehicle; None where it is the nominal one.
         """
         records = _records(list(self._topics.values()))
         records.metadata |= {name: dict(record) for name, record in described.items()}
@@ -143,6 +145,8 @@ class MemoryWriter:
         read = {"config.yaml": configuration, "vehicle.yaml": self._vehicle}
         if isinstance(goal, PathGoal):
             read[PATH_FILE] = goal
+        if plant is not None:
+            read[PLANT_VEHICLE] = plant
         records.attachments.update(dict.fromkeys(read, b""))
         return MemoryLog(records, list(self._topics.values()), read)
 

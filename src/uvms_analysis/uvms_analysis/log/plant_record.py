@@ -5,11 +5,10 @@ from collections.abc import Mapping
 from typing import Any
 
 from uvms_analysis.errors import LogError
-from uvms_analysis.log.read import RunLog
+from uvms_analysis.log.read import PLANT_VEHICLE, RunLog
 
 NAME = "plant"
-VEHICLE_FILE = "plant_vehicle.yaml"
-"""Attachment with the plant's own vehicle, where it is not the nominal one."""
+VEHICLE_FILE = PLANT_VEHICLE
 FIELDS = ("vehicle_overrides", "mismatch")
 
 

@@ -27,6 +27,9 @@ from uvms_core.yaml_text import parse_yaml
 RUN = "uvms"
 """Name of the metadata record about the run."""
 
+PLANT_VEHICLE = "plant_vehicle.yaml"
+"""Attachment with the plant's own vehicle, where it is not the nominal one."""
+
 _UNIQUE_NAMES = (topics.TRUE_ODOMETRY, topics.THRUSTER_COMMAND, topics.WRENCH_COMMAND, topics.IMU)
 """Topics that reveal the namespace: no other topic's name ends like theirs."""
 
@@ -162,7 +165,15 @@ class RunLog:
         Raises:
             LogError: the log has none, or it is damaged.
         """
-        return self._once("vehicle.yaml", self._read_vehicle)
+        return self._once("vehicle.yaml", lambda: self._read_vehicle("vehicle.yaml"))
+
+    @property
+    def plant_vehicle(self) -> Vehicle:
+        """The plant's own vehicle, which need not be the one of the nodes; raises as `vehicle`."""
+        known = self.attachments.keys() | self._read.keys() | set(self._records.left_out)
+        if PLANT_VEHICLE not in known:
+            return self.vehicle
+        return self._once(PLANT_VEHICLE, lambda: self._read_vehicle(PLANT_VEHICLE))
 
     @property
     def path_goal(self) -> PathGoal | None:
@@ -194,10 +205,10 @@ class RunLog:
             raise LogError(f"{what} is not a mapping of names to values")
         return values
 
-    def _read_vehicle(self) -> Vehicle:
-        what = f"log {self.path}: its attachment 'vehicle.yaml'"
+    def _read_vehicle(self, name: str) -> Vehicle:
+        what = f"log {self.path}: its attachment {name!r}"
         try:
-            return vehicle_from_yaml(self.text("vehicle.yaml"), what)
+            return vehicle_from_yaml(self.text(name), what)
         except VehicleFileError as fault:
             raise LogError(str(fault)) from fault
 

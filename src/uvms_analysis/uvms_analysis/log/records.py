@@ -63,6 +63,7 @@ class _Block(NamedTuple):
     code: int
     start: int
     length: int
+    channels: frozenset[int]  # of its messages
 
 
 @dataclass
@@ -116,6 +117,8 @@ class Records:
             LogError: the file has changed since it was opened, or is gone.
         """
         block = self.blocks[number]
+        if block.channels.isdisjoint(channels):
+            return []
         try:
             with self._open() as file:
                 file.seek(block.start)
@@ -140,6 +143,8 @@ class Records:
         try:
             with self.path.open("rb") as file:
                 for block in self.blocks:
+                    if block.channels.isdisjoint(wanted):
+                        continue
                     file.seek(block.start)
                     yield from _entries(block.code, file.read(block.length), wanted)
         except OSError as fault:
@@ -174,6 +179,7 @@ class _Reader:
         self._loose_schemas: dict[int, Schema] = {}
         self._loose_channels: dict[int, Channel] = {}
         self._statistics: Statistics | None = None
+        self._sets: dict[frozenset[int], frozenset[int]] = {}
 
     def read(self) -> None:
         """Fill the records."""
@@ -259,11 +265,18 @@ class _Reader:
         for one in found:
             self._describe(one, self._records.schemas, self._records.channels)
         self._records.counts += counts
-        self._records.blocks.append(_Block(Opcode.CHUNK, start, len(body)))
+        block = _Block(Opcode.CHUNK, start, len(body), self._same(frozenset(counts)))
+        self._records.blocks.append(block)
 
     def _message(self, start: int, body: bytes) -> None:
-        self._records.counts[_MESSAGE.unpack_from(body)[0]] += 1
-        self._records.blocks.append(_Block(Opcode.MESSAGE, start, len(body)))
+        channel = _MESSAGE.unpack_from(body)[0]
+        self._records.counts[channel] += 1
+        block = _Block(Opcode.MESSAGE, start, len(body), self._same(frozenset((channel,))))
+        self._records.blocks.append(block)
+
+    def _same(self, channels: frozenset[int]) -> frozenset[int]:
+        """One object for all blocks of the same channels."""
+        return self._sets.setdefault(channels, channels)
 
     def _loose(self, code: int, body: bytes) -> None:
         one = _DESCRIPTIONS[code](stream_of(body))

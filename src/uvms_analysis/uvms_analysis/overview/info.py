@@ -2,6 +2,8 @@
 
 from typing import Any
 
+from uvms_analysis.analysis import Analysis
+from uvms_analysis.energy import battery_series
 from uvms_analysis.errors import LogError
 from uvms_analysis.log.read import RunLog
 from uvms_analysis.overview.topic_rows import TopicRow, rows_text
@@ -22,7 +24,7 @@ def log_info(log: RunLog, rows: list[TopicRow]) -> dict[str, Any]:
     }
     if firsts:
         facts |= {"first_s": min(firsts), "last_s": max(lasts)}
-    return facts | {"run": log.run} | _vehicle(log) | _end(log)
+    return facts | {"run": log.run} | _vehicle(log) | _battery(log) | _end(log)
 
 
 def info_text(log: RunLog, facts: dict[str, Any], rows: list[TopicRow]) -> str:
@@ -34,6 +36,7 @@ def info_text(log: RunLog, facts: dict[str, Any], rows: list[TopicRow]) -> str:
     lines += [_line(name, value) for name, value in facts["run"].items() if value]
     lines += [_line(name, facts[name]) for name in ("vehicle", "thrusters", "joints", "goal")
               if name in facts]  # fmt: skip
+    lines += [_line("battery", _battery_text(facts["battery"]))] if "battery" in facts else []
     lines += [_line("stopped by", facts["stopped_by"])] if facts.get("stopped_by") else []
     lines += [_line("incident", each) for each in facts.get("incidents", ())]
     if log.attachments:
@@ -51,6 +54,27 @@ def _vehicle(log: RunLog) -> dict[str, Any]:
         "thrusters": ", ".join(each.name for each in vehicle.thrusters),
         "joints": ", ".join(vehicle.joint_names),
     }
+
+
+def _battery(log: RunLog) -> dict[str, Any]:
+    """Share of the charge and voltage at the first and at the last sample."""
+    try:
+        said = battery_series(Analysis(log))
+    except LogError:
+        return {}
+    return {
+        "battery": {
+            "first": float(said.percentage[0]),
+            "last": float(said.percentage[-1]),
+            "voltage_v": float(said.voltage[-1]),
+        }
+    }
+
+
+def _battery_text(battery: dict[str, float]) -> str:
+    return (
+        f"{battery['first']:.2%} to {battery['last']:.2%}, at the end {battery['voltage_v']:.4g} V"
+    )
 
 
 def _end(log: RunLog) -> dict[str, Any]:

@@ -131,6 +131,15 @@ COST = (
         "the drive's",
     ),
     Metric("arm_work_j", "mechanical work of the joints", "J"),
+    Metric("energy.total_wh", "electrical energy", "Wh"),
+    Metric("energy.propulsion_wh", "electrical energy of the thrusters", "Wh"),
+    Metric("energy.arm_wh", "electrical energy of the joints' drives", "Wh"),
+    Metric("energy.hotel_wh", "electrical energy of the hotel load", "Wh", better=""),
+    Metric("energy.power_mean_w", "electrical power, mean", "W"),
+    Metric("energy.power_max_w", "electrical power, greatest", "W"),
+    Metric("battery.used", "share of the battery that was used", "%", _PERCENT),
+    Metric("battery.left", "share of the battery that is left", "%", _PERCENT, better="high"),
+    Metric("battery.lasts_h", "how long a full battery lasts at this rate", "h", better="high"),
 )
 
 HEALTH = (

@@ -97,6 +97,8 @@ def _question(run: ReportedRun, question: Question, facts: Facts, shown: Shown) 
     extra = ""
     if question.key == "disturbed":
         extra = sections.events(run.summary)
+    elif question.key == "cost":
+        extra = sections.energy(run.summary)
     elif question.key == "healthy":
         extra = sections.health(run.log, run.summary)
     intro = f"<p>{escaped(question.intro)}</p>" if question.intro else ""

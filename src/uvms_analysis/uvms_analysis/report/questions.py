@@ -9,6 +9,7 @@ from uvms_analysis.report.plots import (
     attitude,
     disturbance,
     effort,
+    energy,
     health,
     stability,
     tracking,
@@ -78,8 +79,8 @@ QUESTIONS = (
     Question(
         "cost",
         "What did it cost?",
-        "Electrical energy and battery are missing: neither vehicle file nor log says how much"
-        " power a thrust or a torque takes. Work is mechanical; what is braked counts as well.",
+        "Electrical energy is what the vehicle file says that thrusts, torques and the hotel load"
+        " take. Work is mechanical; what is braked counts as well.",
         metrics.COST,
         (
             Group("authority", "Authority left",
@@ -91,6 +92,9 @@ QUESTIONS = (
                   "What the controller commands and what the thrusters achieve by the allocator's"
                   " account. The first ticks may hold steps.", effort.wrench),
             Group("torques", "Joint torques", "As commanded and as measured.", effort.torques),
+            Group("electrical", "Electrical power",
+                  "By the true thrusts, torques and rates.", energy.electrical),
+            Group("battery", "Battery", "As battery_state says.", energy.battery),
             Group("power", "Mechanical power", "Negative: braked.", effort.power, is_open=False),
         ),
     ),

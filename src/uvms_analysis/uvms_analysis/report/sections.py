@@ -166,6 +166,20 @@ def _flat(values: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
             yield key, value
 
 
+def energy(summary: Mapping[str, Any]) -> str:
+    """Electrical energy of each thruster; nothing where it is not known."""
+    total, each = summary["energy"]["total_wh"], summary["energy"].get("thrusters_wh") or {}
+    rows = [
+        (
+            name,
+            f"{number(value)} Wh",
+            f"{number(100.0 * value / total)} %" if total else number(None),
+        )
+        for name, value in each.items()
+    ]
+    return table(("thruster", "electrical energy", "of all"), rows, "Energy of the thrusters")
+
+
 def health(log: RunLog, summary: Mapping[str, Any]) -> str:
     """Sensors, thrusters, counters of the nodes, errors, and what the check of the log found."""
     return "".join((

@@ -13,7 +13,7 @@ from uvms_core import signals
 from uvms_core.checks import trust
 from uvms_core.diagnostics import Status
 from uvms_core.errors import SignalError
-from uvms_core.messages import actions, general, motion, reference
+from uvms_core.messages import actions, battery, general, motion, reference
 from uvms_core.topic import Action, Conversion, Topic
 
 _CONVERSIONS: dict[type, Conversion] = {
@@ -29,6 +29,7 @@ _CONVERSIONS: dict[type, Conversion] = {
     signals.Allocation: Conversion(motion.allocation_to, motion.allocation_from),
     signals.Stability: Conversion(motion.stability_to, motion.stability_from),
     signals.AppliedThrust: Conversion(motion.applied_to, motion.applied_from),
+    signals.BatteryState: Conversion(battery.battery_to, battery.battery_from),
     signals.Reference: Conversion(reference.reference_to, reference.reference_from),
     signals.PathGoal: Conversion(actions.path_to, actions.path_from),
     signals.JointGoal: Conversion(actions.joints_to, actions.joints_from),

@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-POWERS = {
+POWERS: dict[str, float] = {
     "_m": 1,
     "_m2": 2,
     "_m3": 3,
@@ -22,14 +22,21 @@ POWERS = {
     "_nm_s": 4,
     "_nm_rad": 4,
     "_s_rad": 1,
+    "_w": 3.5,
+    "_ah": 3,
+    "_wh": 3,
+    "_ohm": -3,
 }
 """Power of the length in a field, by the unit that its name ends with.
 
 That of the end stops' dissipation is chosen so that the rate at which a stop takes energy from a
 joint, effort x dissipation / inertia, stays: a small copy then needs no shorter integration step.
+That of a thruster's power is the actuator disc's, T^1.5 over the root of an area. A battery holds
+as much for its mass, and is so many cells more or less side by side, with the same voltage.
 """
 SECTIONS = ("hull", "thrusters", "arm")
-"""What is scaled; of the sensors only the places are, and water and tether are the same."""
+"""What is scaled, and the battery; of the sensors only the places are, and water and tether are the
+same."""
 PRODUCT = re.compile(r"[XYZKMN]_u[vwpqr]")
 """Products of velocities in a force or moment, such as Y_uv."""
 MOMENTS, TURNS = "KMN", "pqr"
@@ -41,6 +48,9 @@ def scaled_data(data: dict[str, Any], factor: float) -> dict[str, Any]:
     for section in SECTIONS:
         copy[section] = _scaled(data[section], factor)
     copy["sensors"] = _places(data["sensors"], factor)
+    if copy.get("electrical"):  # the hotel load is that of the same instruments
+        battery = _scaled(copy["electrical"].get("battery"), factor)
+        copy["electrical"] = {**copy["electrical"], "battery": battery}
     hull = copy["hull"]
     for body in (hull, *copy["arm"]["links"]):
         body["added_mass"] = _matrix(body["added_mass"], factor, 3, 1)
@@ -74,7 +84,7 @@ def _field(name: str, value: Any, factor: float) -> Any:
     return (np.array(value, dtype=float) * factor**power).tolist()
 
 
-def _power(name: str) -> int | None:
+def _power(name: str) -> float | None:
     if PRODUCT.fullmatch(name):
         return 2 + (name[0] in MOMENTS) + (name[3] in TURNS)
     fits = [unit for unit in POWERS if name.endswith(unit)]

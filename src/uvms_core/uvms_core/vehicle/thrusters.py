@@ -7,6 +7,7 @@ from pydantic import Field, model_validator
 from uvms_core.signals import Array
 from uvms_core.vehicle.parts import Part, UnitVector, Vector3
 from uvms_core.vehicle.thrust_curve import DeadZone, ThrustCurve, ThrustTable
+from uvms_core.vehicle.thruster_power import ThrusterPower
 
 _WITHIN = 1e-9
 """Relative: a limit printed as the end of the curve is within it."""
@@ -38,6 +39,9 @@ class Thruster(Part):
     dead_zone: DeadZone = 0.0
     time_constant_s: float = Field(gt=0.0, description="time constant of the first-order lag, s")
     slew_limit_n_s: float = Field(gt=0.0, description="largest rate of change of the thrust, N/s")
+    power: ThrusterPower | None = Field(
+        default=None, description="electrical power by thrust; none: not given"
+    )
 
     @model_validator(mode="after")
     def _check_limits(self) -> "Thruster":
@@ -55,6 +59,8 @@ class Thruster(Part):
                 )
         if self.curve is not None:
             self._check_within_curve(self.curve)
+        if self.power is not None:
+            self.power.check_within(self.astern_n)
         return self
 
     def _check_within_curve(self, curve: ThrustCurve) -> None:

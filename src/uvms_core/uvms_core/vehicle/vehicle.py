@@ -3,6 +3,7 @@
 from pydantic import Field, field_validator, model_validator
 
 from uvms_core.vehicle.arm import Arm
+from uvms_core.vehicle.electrical import Battery, Electrical
 from uvms_core.vehicle.environment import Environment
 from uvms_core.vehicle.hull import Hull
 from uvms_core.vehicle.parts import Part, unique_names
@@ -28,6 +29,11 @@ class Vehicle(Part):
         description="pull of a tether by depth, which the plant adds and no controller knows of;"
         " none: no tether",
     )
+    electrical: Electrical | None = Field(
+        default=None,
+        description="battery and loads, from which the plant and the report work out the energy of"
+        " a run, with `power` of the thrusters; none: not given",
+    )
 
     @field_validator("thrusters")
     @classmethod
@@ -43,6 +49,23 @@ class Vehicle(Part):
             except ValueError as fault:
                 raise ValueError(f"sensors.{name}: {fault}") from fault
         return self
+
+    @property
+    def lacks_power(self) -> str:
+        """Why the electrical power of a motion is not known; empty where it is."""
+        if self.electrical is None:
+            return "the vehicle file has no section `electrical`"
+        lacking = [thruster.name for thruster in self.thrusters if thruster.power is None]
+        if lacking:
+            return f"the vehicle file gives no `power` of {', '.join(lacking)}"
+        return ""
+
+    @property
+    def battery(self) -> Battery | None:
+        """The battery, where it is known what is taken from it."""
+        if self.electrical is None or self.lacks_power:
+            return None
+        return self.electrical.battery
 
     @property
     def n_joints(self) -> int:

@@ -10,6 +10,7 @@ from std_srvs.srv import SetBool, Trigger
 
 from uvms_core import diagnostics, topics
 from uvms_core.attitude import attitude_status
+from uvms_core.battery import battery_status
 from uvms_core.checks import MAX_AGE_S
 from uvms_core.config import Config
 from uvms_core.errors import ConfigError, StampError
@@ -69,7 +70,7 @@ class PaceConfig(Config):
 
 
 class PlantNode(UvmsNode):
-    """thruster_command and joint_command in; sensors, joint_states, ground truth and /clock out.
+    """thruster_command, joint_command in; sensors, joint_states, battery_state, truth, /clock out.
 
     Services: `start` (begin, where `auto_start` is false), `pause` (hold simulated time),
     `apply_event` (something happens to the vehicle) and `reset` (back to the start, at t = 0).
@@ -101,7 +102,7 @@ class PlantNode(UvmsNode):
         self._rivals.know()
         self._look = time.monotonic() + LOOK
         self._recorded, self._held = 0, False
-        self._tilt_reported = -DIAGNOSTICS_PERIOD
+        self._warned = -DIAGNOSTICS_PERIOD
         if self.lockstep and self._pace.recorder_window:
             self.listen(topics.RECORDED, self._take_recorded)
         for topic in (topics.THRUSTER_COMMAND, topics.JOINT_COMMAND):
@@ -252,7 +253,7 @@ class PlantNode(UvmsNode):
         for topic, signal in plant_outputs(stamp, sensors, truth, self._sensor_topics):
             self.send(topic, signal)
         self._say_what_happened()
-        self._warn_of_attitude(stamp, truth.odometry.quaternion)
+        self._warn(stamp, truth.odometry.quaternion)
         self.report_each_second(stamp, **self._values)
 
     def _say_what_happened(self) -> None:
@@ -262,13 +263,14 @@ class PlantNode(UvmsNode):
         if happened:
             self.report(self._plant.stamp, **self._values, **status_values(happened))
 
-    def _warn_of_attitude(self, stamp: int, quaternion: Array) -> None:
-        """At most once a second, whatever else the plant has to report."""
-        if 0 <= stamp - self._tilt_reported < DIAGNOSTICS_PERIOD:
+    def _warn(self, stamp: int, quaternion: Array) -> None:
+        """Of attitude and battery, at most once a second, whatever else there is to report."""
+        if 0 <= stamp - self._warned < DIAGNOSTICS_PERIOD:
             return
-        level, text = attitude_status(quaternion)
+        battery = battery_status(self._plant.battery_share)
+        level, text = diagnostics.together(attitude_status(quaternion), battery)
         if level != diagnostics.OK:
-            self._tilt_reported = stamp
+            self._warned = stamp
             self.report(stamp, level, text, **self._values)
 
     @property
@@ -357,7 +359,7 @@ class PlantNode(UvmsNode):
         self._commands.clear()
         self._without.clear()
         self._recorded, self._held = 0, False
-        self._tilt_reported = -DIAGNOSTICS_PERIOD
+        self._warned = -DIAGNOSTICS_PERIOD
         if self._running:
             self._start()
         response.success, response.message = True, "back at the start, t = 0"

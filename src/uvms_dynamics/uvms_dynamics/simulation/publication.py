@@ -21,6 +21,8 @@ def plant_outputs(
     """
     yield topics.CLOCK, stamp
     yield topics.APPLIED_THRUST, truth.applied
+    if truth.battery is not None:
+        yield topics.BATTERY_STATE, truth.battery
     yield topics.TRUE_ODOMETRY, truth.odometry
     yield topics.TRUE_JOINT_STATES, truth.joints
     yield topics.TRUE_DISTURBANCE, truth.disturbance

@@ -4,10 +4,13 @@ They are loops: numba takes seconds to compile what numpy's slices, broadcasts a
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner
 from uvms_observer.navigation.state import SIZE, NavigationState
+
+Places = NDArray[np.int64]
 
 
 @exact_inner
@@ -47,6 +50,19 @@ def product(A: Array, B: Array) -> Array:
                 for j in range(B.shape[1]):
                     out[i, j] += factor * B[k, j]
     return out
+
+
+@exact_inner
+def filled(A: Array) -> tuple[Places, Places]:
+    """How many elements of each row (m,) are not 0, and in which columns they are (m, n)."""
+    counts = np.zeros(A.shape[0], np.int64)
+    places = np.empty(A.shape, np.int64)
+    for i in range(A.shape[0]):
+        for k in range(A.shape[1]):
+            if A[i, k] != 0.0:
+                places[i, counts[i]] = k
+                counts[i] += 1
+    return counts, places
 
 
 @exact_inner

@@ -12,7 +12,7 @@ import numpy as np
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
-from uvms_observer.navigation.arrays import covariance_of, product
+from uvms_observer.navigation.arrays import covariance_of, filled, product
 from uvms_observer.navigation.state import (
     DVL_MISALIGNMENT,
     DVL_SCALE,
@@ -167,19 +167,20 @@ def _correct_covariance(P: Array, gain: Array, H: Array, HP: Array, N: Array) ->
             if factor != 0.0:
                 for j in range(SIZE):
                     P[i, j] -= factor * HP[a, j]
+    counts, places = filled(H)
     right = np.zeros(m)
     for i in range(SIZE):
         for a in range(m):
             total = 0.0
-            for k in range(SIZE):
-                if H[a, k] != 0.0:
-                    total += P[i, k] * H[a, k]
+            for n in range(counts[a]):
+                k = places[a, n]
+                total += P[i, k] * H[a, k]
             right[a] = -total
         for a in range(m):
             for b in range(m):
                 right[a] += gain[b, i] * N[b, a]
         for a in range(m):
-            for j in range(i + 1):
+            for j in range(SIZE):  # beyond i in vain, but in vector instructions
                 P[i, j] += right[a] * gain[a, j]
     for i in range(SIZE):
         for j in range(i):

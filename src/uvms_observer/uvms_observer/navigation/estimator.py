@@ -1,32 +1,25 @@
 """The filter proper: a state at a time, which samples carry forward and correct, one by one."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from copy import copy
-from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
-from uvms_observer.navigation.begin.alignment import aligned, levelled
-from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost
-from uvms_observer.navigation.inertial.at_once import UNUSUAL, take_inertial
-from uvms_observer.navigation.inertial.installation import Installation
+from uvms_observer.navigation.begin.first_state import first_state
+from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost, placed
+from uvms_observer.navigation.inertial.at_once import alike, packed, take_inertial
+from uvms_observer.navigation.inertial.installation import Installation, Stated
+from uvms_observer.navigation.inertial.made_up import make_up_for
 from uvms_observer.navigation.inertial.screen import (
-    ImuScreen,
-    Jump,
     ScreenMemory,
     Trend,
     remember,
     still,
 )
-from uvms_observer.navigation.inertial.unknown_motion import (
-    GAP,
-    change_velocity,
-    gap_spread,
-    spread,
-)
+from uvms_observer.navigation.inertial.unknown_motion import GAP, gap_spread, spread
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.imu import Gyrocompass
 from uvms_observer.navigation.navigation_config import NavigationConfig
@@ -40,17 +33,13 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.trust import consistency, undecided
-from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally
+from uvms_observer.navigation.trust import consistency, offsets, undecided
+from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally, accepted
+from uvms_observer.navigation.trust.offsets import Offsets
+from uvms_observer.navigation.trust.stuck import Repeated, is_stuck
 from uvms_observer.navigation.trust.undecided import Doubt
 
 LEVEL = np.array([0.0, 0.0, 0.0, 1.0])
-MOST = np.repeat([np.radians(1.0), 0.1], 3)
-"""Std of the bias of a unit, rad/s and m/s^2, whose readings have stepped by more: it is rather the
-vehicle that was pushed."""
-KNOCK_M = 0.02
-"""Change of velocity by a knock that falls between two readings, m/s, for each rad/s by which the
-rate has changed: the arm about which it turns the unit, less what the readings have of it."""
 SETTLED = to_nanoseconds(1.0)
 """After an unusual reading of the inertial unit, before the estimate is itself again."""
 
@@ -83,6 +72,8 @@ class Estimator:
         }
         self.tallies = dict.fromkeys(measurements, Tally())
         self._doubts: dict[str, Doubt] = {}  # of the sensors whose last sample was rejected
+        self._offsets = Offsets()
+        self._repeated: dict[str, Repeated] = {}  # last readings
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured
@@ -92,7 +83,8 @@ class Estimator:
         self._now = self._rate, self._force  # what it would read at the estimator's time
         self._inertial = 0  # ns, stamp of the last IMU sample
         self._sample: ImuSample | None = None  # that sample
-        self._screen = ImuScreen(imu.rate_variance**0.5, imu.force_noise, imu.period)
+        self._excess: Stated | None = None  # noise that the last sample of the IMU states
+        self._screen = imu.screen(0.0, 0.0)
         self._memory: ScreenMemory = remember(still(self._rate, self._force))
         self._before = self._rate, self._force, 1.0  # readings before the last, s between them
         self._unusual = -SETTLED  # ns, stamp of the last of them that was held back or unlikely
@@ -103,6 +95,7 @@ class Estimator:
         other.state = self.state.copied()
         other.tallies = dict(self.tallies)
         other._doubts = dict(self._doubts)
+        other._repeated = dict(self._repeated)
         return other
 
     def look_for_heading(self, readings: Iterable[Reading]) -> None:
@@ -120,17 +113,26 @@ class Estimator:
             for each in readings
         )
 
-    def take(self, reading: Reading) -> None:
-        """Go to the reading's stamp and use it; before the first IMU sample others are ignored."""
+    def take(self, readings: Sequence[Reading]) -> None:
+        """Go to the stamp of each reading and use it."""
+        while readings:
+            at_once = self._take_at_once(readings)
+            if at_once:
+                self._bound_speed()
+            else:
+                self._take(readings[0])
+            readings = readings[at_once or 1 :]
+
+    def _take(self, reading: Reading) -> None:
+        """One reading in any case; before the first IMU sample others are ignored."""
         inertial = reading.name == INERTIAL.name
         if self.time is None:
             if inertial:
                 self._align(reading.sample)
         elif inertial:
-            if not self._take_at_once(reading):
-                self._carry(reading.sample)
-                if not self._measurements[reading.name].usable(reading.sample):
-                    return
+            self._carry(reading.sample)
+            self._bound_speed()
+            if self._measurements[reading.name].usable(reading.sample):
                 self._correct(reading)
         elif self._measurements[reading.name].usable(reading.sample):
             self.advance(reading.stamp)
@@ -150,71 +152,76 @@ class Estimator:
     def odometry(self) -> Odometry:
         """The estimate at the body origin, at the present time."""
         imu, state = self._imu, self.state
-        if self._doubts:
-            open_ones = [(each, self.tallies[name]) for name, each in self._doubts.items()]
-            wider = undecided.widened(state.covariance, open_ones, self.time or 0)
-            state = state if wider is None else state._replace(covariance=wider)
+        wider = undecided.widened(state.covariance, self._doubts, self.tallies, self.time or 0)
+        if wider is not None:
+            state = state._replace(covariance=wider)
         if beyond := self.inconsistent():
             state = state._replace(covariance=max(beyond.values()) * state.covariance)
         return odometry(self.time or 0, state, imu.body, self._now[0], imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        imu = self._imu
-        if not sample.oriented:
-            if self._heading is None:
-                return
-            name, heading = self._heading.name, self._heading.sample
-            sample, imu = levelled(sample, imu, partial(self._measurements[name].heading, heading))
-        start, config = self.start, self._config
-        if start is None and config.start == "fixes":
-            start = lost(sample.stamp, np.array(config.initial_position_m))
-        self.state = aligned(sample, imu, config, start)
-        for each in self._measurements.values():
-            self.state = each.begin(self.state)
-            for index, variance in each.initial_variance.items():
-                self.state.covariance[index, index] = variance
+        begun = first_state(
+            sample, self._heading, self._measurements, self._imu, self._config, self.start
+        )
+        if begun is None:
+            return
+        self.state, sample = begun
+        self._excess = None  # the state is new
+        self._listen(self._imu.excess_of(sample))
         self.time = self._inertial = sample.stamp
         self._sample = sample
-        self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
-        self._now = self._rate, self._force
+        self._now = self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
         self._memory = remember(still(self._rate, self._force))
         self._before = self._rate, self._force, 1.0
 
-    def _take_at_once(self, reading: Reading) -> bool:
-        """Carry and correct in the usual case; False, and nothing done, where it is another."""
-        tally, compass, imu = self.tallies[reading.name], self._compass, self._imu
-        gone = to_seconds(reading.stamp - self._inertial)
-        if compass is None or tally.row or self._memory.row or gone > GAP * imu.period:
-            return False
-        sample, gate, time = reading.sample, self._gates[reading.name], self.time or 0
-        if not sample.oriented:
-            return False
-        rate_limit, force_limit = self._screen.limits(gone)
-        rate, force = sample.angular_velocity, sample.linear_acceleration
-        rate_now, force_now = self._now
-        distance, mean = take_inertial(
+    def _take_at_once(self, readings: Sequence[Reading]) -> int:
+        """Carry and correct by the first readings where they are the unit's and usual; how many."""
+        compass = self._compass
+        if compass is None or self.time is None or self._memory.row:
+            return 0
+        samples, excess = alike(readings, self._imu.excess_of)
+        if excess is None or self.tallies[INERTIAL.name].row:
+            return 0
+        self._listen(excess)
+        imu, gate, tally = self._imu, self._gates[INERTIAL.name], self.tallies[INERTIAL.name]
+        taken, fits, *running = take_inertial(
             tuple(self.state),
-            *(rate_now, rate, rate_limit),
-            *(force_now, force, force_limit),
-            to_seconds(reading.stamp - time),
-            imu.gravity,
-            *imu.process,
-            *(sample.quaternion, compass.variance_of(sample), gate.limit, tally.mean, gate.keep),
+            *packed(samples),
+            *(self.time, self._inertial, *self._now, *self._screen.allowance),
+            *(imu.gravity, *imu.process, compass.variance_of(samples[0]), gate.limit),
+            *(tally.distance, tally.level, tally.mean, *gate.weights),
         )
-        if distance == UNUSUAL:
-            return False
-        self.time, self._inertial = max(time, reading.stamp), reading.stamp
-        self._before = self._rate, self._force, gone
-        self._rate, self._force, self._sample = rate, force, sample
-        self._now = rate, force
-        if distance <= gate.limit:
-            self.tallies[reading.name] = gate.accepted(tally, reading.stamp, distance, mean)
-        else:
-            self._reject(reading, gate.rejected(tally, reading.stamp, self.state.innovation))
-        return True
+        if not taken:
+            return 0
+        self._remember(samples[:taken])
+        last = readings[taken - 1]
+        count = taken if fits else taken - 1
+        if count:
+            used = samples[count - 1].stamp
+            tally = self.tallies[INERTIAL.name] = accepted(tally, used, count, *running)
+        if not fits:
+            self._reject(last, gate.rejected(tally, last.stamp, self.state.innovation))
+        return int(taken)
+
+    def _listen(self, excess: Stated) -> None:
+        """Take the unit to be as noisy as a sample says, until the next one."""
+        if excess != self._excess:
+            _, rate, force = self._excess = excess
+            self.state.excess[:] = *rate, *force
+            self._screen = self._imu.screen(max(rate), max(force))
+
+    def _remember(self, samples: Sequence[ImuSample]) -> None:
+        """The readings of the unit after samples that are believed."""
+        for sample in samples[-2:]:
+            self._before = self._rate, self._force, to_seconds(sample.stamp - self._inertial)
+            self._rate, self._force = sample.angular_velocity, sample.linear_acceleration
+            self._inertial, self._sample = sample.stamp, sample
+        self._now = self._rate, self._force
+        self.time = max(self.time or 0, self._inertial)
 
     def _carry(self, sample: ImuSample) -> None:
         """With the readings at both ends of the interval: second order in its length."""
+        self._listen(self._imu.excess_of(sample))
         dt = to_seconds(sample.stamp - self._inertial)
         if not self._memory.row:
             self._memory = remember(self._trend(), self._memory.held)
@@ -231,17 +238,12 @@ class Estimator:
         if screened.turn is not None and screened.change is not None:
             spread(tuple(self.state), screened.turn, screened.change, dt)
         if screened.jump is not None:
-            self._make_up_for(screened.jump, dt)
+            make_up_for(self.state, screened.jump, dt)
 
-    def _make_up_for(self, jump: Jump, dt: float) -> None:
-        """What readings that were held back would have changed, and what they do not say."""
-        change_velocity(tuple(self.state), jump.owed)
-        unseen = KNOCK_M * float(np.linalg.norm(jump.rate))
-        spread(tuple(self.state), np.zeros(3), np.full(3, unseen), dt)
-        if jump.stays:
-            step = np.concatenate((jump.rate, jump.force))
-            doubt = np.square(np.clip(step, -MOST, MOST))
-            self.state.covariance[INERTIAL_BIASES, INERTIAL_BIASES] += np.diag(doubt)
+    def _bound_speed(self) -> None:
+        """Where nothing tells the velocity, it is that of such a vehicle."""
+        now = self._imu.speed, self.time or 0
+        self.state, self._offsets = offsets.bound_speed(self.state, self._offsets, *now)
 
     def _trend(self) -> Trend:
         """The last reading that is believed, and how fast it changes."""
@@ -265,11 +267,8 @@ class Estimator:
 
     def inconsistent(self) -> dict[str, float]:
         """How far beyond chance the levels of sensors are, as a factor; of those that are."""
-        return {
-            name: tally.level / self._gates[name].bound
-            for name, tally in self.tallies.items()
-            if tally.level > self._gates[name].bound
-        }
+        shares = {name: each.level / self._gates[name].bound for name, each in self.tallies.items()}
+        return {name: share for name, share in shares.items() if share > 1.0}
 
     def restart(self, since: int) -> None:
         """Give up what has been wrong since then (ns), and begin with the last inertial sample.
@@ -279,15 +278,12 @@ class Estimator:
         now = self.time or 0
         here = lost(now, np.array(self._config.initial_position_m))
         if consistency.is_sound(self.state):
-            moved = (LOST_SPEED_M_S * to_seconds(now - since)) ** 2
-            estimate = self.odometry()
-            pose = estimate.pose_covariance + moved * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
-            here = replace(here, position=estimate.position, pose_covariance=pose)
+            here = placed(here, self.odometry(), to_seconds(now - since))
         self.start = here
         self.tallies = {
             name: Tally(tally.accepted, tally.gated) for name, tally in self.tallies.items()
         }
-        self._doubts = {}
+        self._doubts, self._offsets = {}, Offsets()
         if self._sample is not None:
             self._align(self._sample)
             self.advance(now)
@@ -309,6 +305,11 @@ class Estimator:
         P = self.state.covariance
         P[POSITION, POSITION] += np.diag(np.square([LOST_M, LOST_M, LOST_DEPTH_M]))
 
+    def misfit_of(self, name: str) -> float:
+        """How badly it fits that a sensor is off, by its changes: 0 on average where it is."""
+        kept = self._offsets.of(name)
+        return np.inf if kept is None else kept.misfit
+
     def size_of(self, name: str) -> int:
         """Dimension of a sensor's measurement."""
         return self._measurements[name].size
@@ -320,6 +321,8 @@ class Estimator:
 
     def _correct(self, reading: Reading) -> None:
         name = reading.name
+        if self._is_stuck(reading) or self._follow(reading):
+            return
         update = self._measurements[name].correct
         correct = partial(update, self.state, reading.sample, self._now[0])
         tally = self._gates[name].apply(
@@ -327,9 +330,48 @@ class Estimator:
         )
         if tally.row:
             self._reject(reading, tally)
+            self._begin_to_follow(reading)
         else:
             self.tallies[name] = tally
             self._doubts.pop(name, None)
+
+    def _is_stuck(self, reading: Reading) -> bool:
+        """Whether the sensor has read the same to the last bit too often; such a sample counts."""
+        name = reading.name
+        if not is_stuck(self._repeated, name, self._measurements[name], reading.sample):
+            return False
+        self.tallies[name] = self._gates[name].refused(self.tallies[name], reading.stamp)
+        if self._offsets.of(name):
+            self.state, self._offsets = offsets.silence(self.state, self._offsets)
+        return True
+
+    def _begin_to_follow(self, reading: Reading) -> None:
+        """After a sample that was rejected: if the sensor has just jumped, use its changes."""
+        sensor, tally = self._measurements[reading.name], self.tallies[reading.name]
+        is_new = tally.row == 1 and tally.away is not None and tally.used is not None
+        if is_new and sensor.follows:
+            self.state, self._offsets = offsets.begin(
+                self.state, self._offsets, reading, sensor, self._now[0]
+            )
+
+    def _follow(self, reading: Reading) -> bool:
+        """Use a sample of a sensor that has jumped by its changes; False where it is right again.
+
+        It still counts as rejected: the sensor is off.
+        """
+        name, stamp, tally = reading.name, reading.stamp, self.tallies[reading.name]
+        if tally.away is None or not self._offsets.of(name):
+            return False
+        self.state, self._offsets, residual = offsets.follow(
+            self.state, self._offsets, reading, self._measurements[name], self._now[0],
+            self._imu.speed,
+        )  # fmt: skip
+        if self._offsets.sensor is None:
+            self.tallies[name] = tally._replace(away=tally.away.back(residual))
+            return False
+        innovation = self.state.innovation
+        self._reject(reading, self._gates[name].rejected(tally, stamp, innovation, tally.away))
+        return True
 
     def _reject(self, reading: Reading, tally: Tally) -> None:
         """Keep the tally of a sample that is not used, and what it would have changed."""
@@ -351,4 +393,7 @@ class Estimator:
 
     def _forget_jumps(self, names: Iterable[str]) -> None:
         """Let these sensors come back where they agree, without a jump back."""
-        self.tallies |= {name: self.tallies[name]._replace(away=None) for name in names}
+        for name in tuple(names):
+            self.tallies[name] = self.tallies[name]._replace(away=None)
+            if self._offsets.of(name):
+                self.state, self._offsets = offsets.stop(self.state, self._offsets)

@@ -138,7 +138,10 @@ class NavigationFilter:
         """The readings that are good, in order, and an error for each that is not."""
         checks.later("stamp", stamp, self._stamp, "the last step's")
         newest, good, faults = dict(self._newest), [], []
-        for reading in self._instruments.readings(groups):
+        readings = self._instruments.readings(groups)
+        for samples in groups.values():
+            checks.trust_good(samples)
+        for reading in readings:
             try:
                 self._check_stamp(reading, stamp, newest)
                 self._check_start(reading)

@@ -56,6 +56,8 @@ def _twist(
     for i in range(6):
         for k in range(6):
             noise[i, k] *= rate_variance
+            for m in range(3):
+                noise[i, k] += G[i, m] * state.excess[m] * G[k, m]
     covariance = covariance_of(product(J, state.covariance), J, noise)
     _symmetrize(covariance)
     return nu, covariance

@@ -34,6 +34,7 @@ class ProcessNoise(NamedTuple):
 
     gyro: float  # rad^2/s, spectral density of the rate's white noise
     accelerometer: float  # m^2/s^3, of the specific force's
+    period: float  # s, of a sample: noise of variance s^2 has the spectral density s^2 period
     variance: Array  # (SIZE - 9,) stationary, of the states after the attitude, each of which is
     # first-order Gauss-Markov
     decay: Array  # (SIZE - 9,) 1/s, inverse of their time constants; 0 of one that is constant
@@ -50,6 +51,7 @@ def propagate(
     gravity: float,
     gyro: float,
     accelerometer: float,
+    period: float,
     variance: Array,
     decay: Array,
 ) -> None:
@@ -64,7 +66,7 @@ def propagate(
         force_before, force: the accelerometer's, (3,) m/s^2, body.
         dt: length of the interval, s.
         gravity: m/s^2, down.
-        gyro, accelerometer, variance, decay: see `ProcessNoise`.
+        gyro, accelerometer, period, variance, decay: see `ProcessNoise`.
     """
     state = NavigationState(*fields)
     turn = np.empty(3)  # in the first half of the interval
@@ -87,6 +89,10 @@ def propagate(
     if state.cross.shape[0] > 0:
         _advance_cross(state.cross, R, thrust, dt, phi)
     _add_noise(state.covariance, dt, phi, gyro, accelerometer, variance)
+    for i in range(6):
+        if state.excess[i] > 0.0:
+            _add_excess(state.covariance, R, state.excess, dt, period)
+            break
 
 
 @exact_inner
@@ -165,6 +171,22 @@ def _add_noise(
         P[6 + i, 6 + i] += gyro * dt
     for i in range(SIZE - 9):
         P[9 + i, 9 + i] += (1.0 - phi[i] * phi[i]) * variance[i]
+
+
+@exact_inner
+def _add_excess(P: Array, R: Array, excess: Array, dt: float, period: float) -> None:
+    """P <- P + Q of the noise that the unit states beyond the vehicle file, by its axes."""
+    for i in range(3):
+        for j in range(3):
+            gyro, accelerometer = 0.0, 0.0
+            for k in range(3):
+                gyro += R[i, k] * excess[k] * R[j, k] * period
+                accelerometer += R[i, k] * excess[3 + k] * R[j, k] * period
+            P[i, j] += accelerometer * dt**3 / 3.0
+            P[i, 3 + j] += 0.5 * accelerometer * dt**2
+            P[3 + i, j] += 0.5 * accelerometer * dt**2
+            P[3 + i, 3 + j] += accelerometer * dt
+            P[6 + i, 6 + j] += gyro * dt
 
 
 @exact_inner

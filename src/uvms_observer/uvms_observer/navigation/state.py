@@ -36,6 +36,7 @@ FURTHER = COMPASS_BIAS.stop
 DVL_SCALE = FURTHER
 DEPTH_BIAS = DVL_SCALE + 1
 DVL_MISALIGNMENT = DEPTH_BIAS + 1  # of three
+MOUNTING = (DVL_SCALE, *range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3))
 CURRENT = DVL_MISALIGNMENT + 3  # of two
 SIZE = CURRENT + 2
 WIDEST = 6
@@ -61,13 +62,15 @@ class NavigationState(NamedTuple):
     innovation: Array  # (3, WIDEST) of the last measurement: residual, std of its noise, its own
     # std; zeros beyond its size
     reference: Array  # (3,) m/s, velocity after the last correction by the DVL, see `dvl.py`
+    excess: Array  # (6,) variance of the white noise of the inertial unit's last sample beyond what
+    # the vehicle file says: rates, rad^2/s^2, and forces, m^2/s^4, body axes; see `noise.py`
     target: Array = np.zeros(0)  # (7 k,) poses of k targets, see `target.py`
     cross: Array = np.zeros((0, SIZE))  # (6 k, SIZE) covariance of their errors with e
     target_covariance: Array = np.zeros((0, 0))  # (6 k, 6 k) of their errors
 
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""
-        return NavigationState(*(part.copy() for part in self))
+        return NavigationState._make([part.copy() for part in self])
 
 
 Fields = tuple[Array, ...]
@@ -87,4 +90,5 @@ def empty_state() -> NavigationState:
         np.zeros((SIZE, SIZE)),
         np.zeros((3, WIDEST)),
         np.zeros(3),
+        np.zeros(6),
     )

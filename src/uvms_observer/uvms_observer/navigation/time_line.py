@@ -27,8 +27,7 @@ def replayed(
     done = []
     for readings, end in steps:
         done.append(Step(estimator.copied(), readings, end))
-        for reading in readings:
-            estimator.take(reading)
+        estimator.take(readings)
         estimator.advance(end)
     return done, estimator
 

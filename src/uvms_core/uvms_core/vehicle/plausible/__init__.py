@@ -10,6 +10,7 @@ from uvms_core.vehicle.plausible.angles import check_angles
 from uvms_core.vehicle.plausible.bodies import check_added_mass, check_bodies
 from uvms_core.vehicle.plausible.dissipation import check_dissipation
 from uvms_core.vehicle.plausible.drives import check_drives
+from uvms_core.vehicle.plausible.energy import check_energy
 from uvms_core.vehicle.plausible.finding import Finding
 from uvms_core.vehicle.plausible.instruments import check_instruments
 from uvms_core.vehicle.plausible.mounting import check_mounting
@@ -33,6 +34,7 @@ _ODDITIES = (
     check_stability,
     check_instruments,
     check_drives,
+    check_energy,
 )  # find warnings only
 
 

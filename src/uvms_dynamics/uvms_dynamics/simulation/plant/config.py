@@ -53,6 +53,9 @@ class PlantConfig(StartConfig):
     current: CurrentConfig = Field(
         CurrentConfig(), description="how the water moves: the sum of what is given"
     )
+    battery_charge: float = Field(
+        1.0, ge=0.0, le=1.0, description="share of its charge that the battery has at the start"
+    )
     vehicle_overrides: dict[str, Any] = Field(
         default_factory=dict,
         description="values of the vehicle file that only the plant has, by dotted path, such as"

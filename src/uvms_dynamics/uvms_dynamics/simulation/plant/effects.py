@@ -65,6 +65,7 @@ class EventEffects:
         self._stuck: Flags = np.zeros(vehicle.n_joints, dtype=np.bool_)
         self._pushes: list[Array] = []
         self._load: Load | None = None
+        self._has_power = True
         self.system = self.moving = system
 
     @property
@@ -96,9 +97,16 @@ class EventEffects:
 
     def set_thruster(self, name: str, share: float, stuck: float) -> None:
         """Thrust is `share` of what a whole thruster makes of its command, plus `stuck`, N."""
+        if not self._has_power:
+            return
         i = self._vehicle.thruster_names.index(name)
         self.system.thrusters[i, SHARE] = share * self._whole[i]
         self.system.thrusters[i, STUCK] = stuck
+
+    def cut_power(self) -> None:
+        """No thruster gives thrust any more, whatever is commanded or stuck; with its lag."""
+        self._has_power = False
+        self.system.thrusters[:, [SHARE, STUCK]] = 0.0
 
     def set_joint(self, name: str, stuck: bool) -> None:
         """The joint stops at once and keeps its angle, or moves again."""

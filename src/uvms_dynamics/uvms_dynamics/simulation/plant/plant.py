@@ -14,6 +14,7 @@ from uvms_core.signals import (
 )
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.layout import EFFORT
+from uvms_dynamics.simulation.battery import Energy
 from uvms_dynamics.simulation.drives import ThrusterDrives
 from uvms_dynamics.simulation.events import Event, Events, Happened, Schedule, check_events
 from uvms_dynamics.simulation.events.kinds import check_payloads
@@ -36,6 +37,7 @@ from uvms_dynamics.simulation.plant.config import (
 from uvms_dynamics.simulation.plant.divergence import check_finite
 from uvms_dynamics.simulation.plant.effects import EventEffects
 from uvms_dynamics.simulation.plant.stability import check_plant
+from uvms_dynamics.simulation.plant.supply import Supply
 from uvms_dynamics.simulation.plant.truth import (
     PlantTruth,
     pushed,
@@ -89,6 +91,7 @@ class Plant:
         self._effects = EventEffects(
             vehicle, self._drift, system, self._state, self._brakes, self._step
         )
+        self._supply = Supply(vehicle, config.battery_charge, self._step)
         self._schedule = Schedule(self._step, self._period)
         self._happened: list[Happened] = []
         self._states = np.empty((steps + 1, self._state.shape[0]))
@@ -124,8 +127,19 @@ class Plant:
             checks.trust(true_joints(stamp, state, self._effort)),
             checks.trust(pushed(disturbance, state, self._effects.push_wrench)),
             checks.trust(self._applied()),
+            self._battery,
             drift.copy() if moving is None else drift + moving.orbital[:3],
         )
+
+    @property
+    def energy(self) -> Energy | None:
+        """Electrical energy that was taken so far; None where the vehicle file does not say."""
+        return self._supply.energy
+
+    @property
+    def battery_share(self) -> float | None:
+        """Share of the battery's charge that is left, 0 to 1; None where there is none."""
+        return self._supply.share
 
     def apply(self, event: Event) -> str:
         """Take an event while the run is on; returns what will happen, in words.
@@ -190,7 +204,8 @@ class Plant:
         """Advance by one control period under constant commands, cut at the drives' limits.
 
         None is the safe state, where there is no command to use: no thrust; no torque of the
-        drives, and those joints braked that have a brake.
+        drives, and those joints braked that have a brake. It is the same with an empty battery,
+        whatever is commanded.
 
         Raises SignalError for a command of wrong size or that is not finite (the plant then does
         not move), PlantDiverged where the state is no longer finite.
@@ -203,12 +218,17 @@ class Plant:
         self._commands = thruster, joints
         limit = self._system.model[1 : 1 + self._vehicle.n_joints, EFFORT]
         self._effort = np.clip(joints.effort, -limit, limit)
+        self._braked = self._safe[1] or self._supply.is_empty
+        if self._supply.is_empty:
+            self._effort = np.zeros_like(self._effort)
         began, self._stamp = self._stamp, self._stamp + self._period
         realised = self._drives.realised(thruster.thrust)
         self._advance(np.ascontiguousarray(realised), began)
         stamps = tuple(range(began + self._step, self._stamp + 1, self._step))
         self._frame = self._sample(stamps, self._states[1:], self._rates[1:])
+        self._supply.take(self._states, self._effort)
         self._let_happen()
+        self._look_at_battery()
 
     def _applied(self) -> AppliedThrust:
         thruster, joints = self._commands
@@ -228,16 +248,26 @@ class Plant:
         """
         idle = np.zeros(self._vehicle.n_thrusters)
         self._commands = ThrusterCommand(0, idle), JointCommand(0, self._effort)
-        self._safe = True, True
+        self._safe, self._braked = (True, True), False
         self._integrate(idle, self._states[:1], self._rates[:1], 0)
         self._frame = self._sample((0,), self._states[:1], self._rates[:1])
         self._let_happen()
+        self._look_at_battery()
+
+    def _look_at_battery(self) -> None:
+        """Its sample, where one is due, and what became of it: without power nothing moves."""
+        sample = self._supply.sample(self._stamp)
+        self._battery = None if sample is None else checks.trust(sample)
+        at_s = to_seconds(self._stamp)
+        self._happened += [Happened(self._stamp, at_s, text) for text in self._supply.news()]
+        if self._supply.is_empty:
+            self._effects.cut_power()
 
     def _integrate(self, thrust: Array, states: Array, rates: Array, ends: int) -> None:
         """As many steps as the tables have rows after the first; the last is at `ends`, ns."""
         step = to_seconds(self._step)
         began = to_seconds(ends - (len(states) - 1) * self._step)
-        if self._safe[1] and self._brakes.exist and len(states) > 1:
+        if self._braked and self._brakes.exist and len(states) > 1:
             self._brakes.advance(self._state, thrust, step, states, rates, began)
         else:
             system, rows = tuple(self._effects.moving), (tuple(self._scratch), states, rates)

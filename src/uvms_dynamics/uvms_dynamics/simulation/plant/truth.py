@@ -4,7 +4,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from uvms_core.signals import AppliedThrust, Array, DisturbanceBudget, JointStates, Odometry
+from uvms_core.signals import (
+    AppliedThrust,
+    Array,
+    BatteryState,
+    DisturbanceBudget,
+    JointStates,
+    Odometry,
+)
 from uvms_dynamics.kernels import coupling_wrench, restoring_wrench
 from uvms_dynamics.kernels.hull import hull_hydrodynamic_wrench
 from uvms_dynamics.kernels.inverse import coupling_wrench_in
@@ -19,12 +26,13 @@ from uvms_dynamics.simulation.water.surroundings import Surroundings
 
 @dataclass(frozen=True)
 class PlantTruth:
-    """True pose and velocity over ground, joints, disturbance and thrust."""
+    """True pose and velocity over ground, joints, disturbance, thrust and battery."""
 
     odometry: Odometry
     joints: JointStates
     disturbance: DisturbanceBudget
     applied: AppliedThrust
+    battery: BatteryState | None  # where a sample is due
     water: Array  # (3,) velocity of the water at the hull's centre of buoyancy, world, m/s
 
     @property

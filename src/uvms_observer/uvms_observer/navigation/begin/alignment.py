@@ -68,7 +68,8 @@ def levelled(
     """
     force = sample.linear_acceleration
     angle, variance = heading(level(force)) or (0.0, np.pi**2)
-    tilt = level_variance(imu.gravity, imu.force_noise, float(imu.process.variance[3]))
+    noise = float(np.hypot(imu.force_noise, max(imu.excess_of(sample)[2]) ** 0.5))
+    tilt = level_variance(imu.gravity, noise, float(imu.process.variance[3]))
     return (
         replace(sample, quaternion=level(force, angle)),
         imu._replace(attitude_variance=np.array([tilt, tilt, variance])),

@@ -56,6 +56,17 @@ def carried(estimate: Odometry, stamp: int) -> Odometry:
     )
 
 
+def placed(here: Odometry, estimate: Odometry, doubtful_s: float) -> Odometry:
+    """`here`, about which nothing is known, where an estimate was at last.
+
+    It has been wrong for `doubtful_s`, within which the vehicle cannot have gone farther than it
+    can move.
+    """
+    moved = (LOST_SPEED_M_S * doubtful_s) ** 2
+    pose = estimate.pose_covariance + moved * np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
+    return replace(here, position=estimate.position, pose_covariance=pose)
+
+
 def doubted(estimate: Odometry, stamp: int) -> Odometry:
     """Where the estimate has it at a later stamp (ns), but neither place nor velocity is known."""
     here = carried(estimate, stamp)

@@ -1,80 +1,158 @@
-"""One sample of the inertial unit in one call: the usual case of what `Estimator` does in steps.
+"""Samples of the inertial unit in one call: the usual case of what `Estimator` does in steps.
 
-That is: a reading near the last one, no gap before it, a gyrocompass that is believed. The sample
-carries the state, then its attitude corrects it.
+That is: readings near the one before them, no gaps between them, a gyrocompass that is believed.
+Each carries the state, then its attitude corrects it.
 """
+
+from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from uvms_core.signals import Array
-from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_core.sensors import INERTIAL
+from uvms_core.signals import NANOSECONDS, Array, ImuSample
+from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_observer.navigation.inertial.installation import Stated
+from uvms_observer.navigation.inertial.unknown_motion import GAP
 from uvms_observer.navigation.measurements.imu import correct_attitude
 from uvms_observer.navigation.propagation import propagate
-from uvms_observer.navigation.state import WIDEST, Fields
+from uvms_observer.navigation.samples import Reading
+from uvms_observer.navigation.state import Fields
+from uvms_observer.navigation.trust.innovation_gate import followed
 
-UNUSUAL = -1.0
-"""Returned where nothing has been done: the screen has to judge."""
+QUATERNION, RATE, FORCE, WIDTH = 0, 4, 7, 10
+"""Where they begin in a row of `packed`, and how long it is."""
+
+
+def alike(
+    readings: Sequence[Reading], excess_of: Callable[[ImuSample], Stated]
+) -> tuple[list[ImuSample], Stated | None]:
+    """The unit's samples that come first, with an attitude, and all as noisy as they say.
+
+    Args:
+        readings: in the order of their stamps.
+        excess_of: what noise a sample states.
+
+    Returns:
+        The samples, and what they state; None where there are none.
+    """
+    samples: list[ImuSample] = []
+    stated: Stated | None = None
+    for reading in readings:
+        if reading.name != INERTIAL.name or not reading.sample.oriented:
+            break
+        excess = excess_of(reading.sample)
+        if stated is not None and excess != stated:
+            break
+        stated = excess
+        samples.append(reading.sample)
+    return samples, stated
+
+
+def packed(samples: Sequence[ImuSample]) -> tuple[Array, Array]:
+    """Stamps (k,) ns, and attitudes, rates and forces (k, WIDTH), of samples."""
+    parts = [
+        part
+        for sample in samples
+        for part in (sample.quaternion, sample.angular_velocity, sample.linear_acceleration)
+    ]
+    stamps = np.array([sample.stamp for sample in samples])
+    return stamps, np.concatenate(parts).reshape(-1, WIDTH)
 
 
 @exact_kernel
 def take_inertial(
     fields: Fields,
-    rate_before: Array,
+    stamps: Array,
+    rows: Array,
+    time: int,
+    last: int,
     rate: Array,
-    rate_limit: float,
-    force_before: Array,
     force: Array,
-    force_limit: float,
-    dt: float,
+    rate_jump: float,
+    angular_jerk: float,
+    force_jump: float,
+    jerk: float,
     gravity: float,
     gyro: float,
     accelerometer: float,
+    period: float,
     variance: Array,
     decay: Array,
-    quaternion: Array,
     compass_variance: Array,
     gate: float,
+    total: float,
+    level: float,
     mean: Array,
+    size: int,
     keep: float,
-) -> tuple[float, Array]:
-    """Propagate, then correct by the attitude unless it is beyond the gate, in place.
+    new: float,
+) -> tuple[int, bool, float, float, Array]:
+    """Propagate to each sample, then correct by its attitude, in place, as long as all is usual.
 
     Args:
         fields: of the state.
-        rate_before, rate, force_before, force: readings at both ends, (3,), as `propagate`.
-        rate_limit, force_limit: largest change, along any axis, of a reading that is believed.
-        dt: since the time of the state, s.
-        gravity, gyro, accelerometer, variance, decay: as `propagate`.
-        quaternion, compass_variance, gate: as `correct_attitude`.
-        mean: (WIDEST,) running mean of the residuals before.
-        keep: share of it that stays.
+        stamps, rows: of the samples, as `packed`.
+        time: of the state, ns.
+        last: stamp of the last sample before these, ns.
+        rate, force: what the unit reads at `time`, (3,) rad/s and m/s^2.
+        rate_jump, angular_jerk, force_jump, jerk: by how much a reading that is believed may
+            change along any axis, at once and by the second.
+        gravity, gyro, accelerometer, period, variance, decay: as `propagate`.
+        compass_variance, gate: as `correct_attitude`.
+        total, level, mean, size, keep, new: as `followed`.
 
     Returns:
-        The squared distance of the attitude's residual, or `UNUSUAL`; and the mean with it.
+        How many samples have been taken; whether the attitude of the last of them was within the
+        gate, which ends the run where it was not; and total, level and mean after them. Nothing has
+        been done with the next one, of which the screen has to judge.
     """
-    for i in range(3):
-        if (
-            abs(rate[i] - rate_before[i]) > rate_limit
-            or abs(force[i] - force_before[i]) > force_limit
+    fits, taken = True, 0
+    while fits and taken < stamps.shape[0]:
+        stamp, row = stamps[taken], rows[taken]
+        next_rate, next_force = _part(row, RATE), _part(row, FORCE)
+        gone = (stamp - last) / NANOSECONDS
+        if gone > GAP * period or not (
+            _is_near(rate, next_rate, rate_jump + angular_jerk * gone)
+            and _is_near(force, next_force, force_jump + jerk * gone)
         ):
-            return UNUSUAL, mean
-    if dt > 0.0:
-        propagate(
-            fields,
-            rate_before,
-            rate,
-            force_before,
-            force,
-            dt,
-            gravity,
-            gyro,
-            accelerometer,
-            variance,
-            decay,
-        )
-    distance = correct_attitude(fields, quaternion, compass_variance, gate)
-    innovation, after = fields[8], np.zeros(WIDEST)
-    weight = np.sqrt(1.0 - keep * keep)
+            break
+        if stamp > time:
+            propagate(
+                fields,
+                rate,
+                next_rate,
+                force,
+                next_force,
+                (stamp - time) / NANOSECONDS,
+                gravity,
+                gyro,
+                accelerometer,
+                period,
+                variance,
+                decay,
+            )
+            time = stamp
+        distance = correct_attitude(fields, row[QUATERNION:RATE].copy(), compass_variance, gate)
+        fits = distance <= gate
+        if fits:
+            total, level, mean = followed(total, level, mean, distance, fields[8], size, keep, new)
+        last, rate, force = stamp, next_rate, next_force
+        taken += 1
+    return taken, fits, total, level, mean
+
+
+@exact_inner
+def _part(row: Array, begin: int) -> Array:
+    """Three values of a row."""
+    part = np.empty(3)
     for i in range(3):
-        after[i] = keep * mean[i] + weight * innovation[0, i] / innovation[2, i]
-    return distance, after
+        part[i] = row[begin + i]
+    return part
+
+
+@exact_inner
+def _is_near(before: Array, reading: Array, limit: float) -> bool:
+    for i in range(3):
+        if abs(reading[i] - before[i]) > limit:
+            return False
+    return True

@@ -93,6 +93,8 @@ class ImuScreen:
 
     def __init__(self, rate_noise: float, force_noise: float, period: float) -> None:
         self._rate_jump, self._force_jump = SIGMAS * rate_noise, SIGMAS * force_noise
+        self.allowance = self._rate_jump, ANGULAR_JERK_RAD_S2, self._force_jump, JERK_M_S3
+        """Change of the rate that is believed at once, and by the second; the same of the force."""
         self._sure = CHANGES * rate_noise / period, CHANGES * force_noise / period
         self._period = period
 
@@ -129,7 +131,8 @@ class ImuScreen:
 
     def limits(self, dt: float) -> tuple[float, float]:
         """Largest changes of rate, rad/s, and force, m/s^2, along an axis that agree after dt s."""
-        return self._rate_jump + ANGULAR_JERK_RAD_S2 * dt, self._force_jump + JERK_M_S3 * dt
+        rate, angular_jerk, force, jerk = self.allowance
+        return rate + angular_jerk * dt, force + jerk * dt
 
     def knows_rate(self, memory: ScreenMemory) -> bool:
         """Whether the last reading's rate is believed, whatever its force."""

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -11,6 +11,14 @@ from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import NavigationState
+
+
+class Linear(NamedTuple):
+    """A sample of m values about the estimate."""
+
+    residual: Array  # (m,) measured minus expected
+    H: Array  # (m, SIZE) derivative of the measurement by the error state
+    N: Array  # (m, m) covariance of its noise
 
 
 class Measurement(ABC):
@@ -29,6 +37,9 @@ class Measurement(ABC):
     """Dimension of the measurement."""
     needs_rate: ClassVar[bool] = False
     """Whether `correct` uses the rate; it is not asked while the rate is not known."""
+    follows: ClassVar[bool] = False
+    """Whether a sensor that has jumped away mostly goes on as before, off by something that lasts:
+    then its changes are used (`trust/lasting.py`), and it has `about`. Of three values."""
 
     def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
         imu = vehicle.sensors.imu
@@ -36,6 +47,10 @@ class Measurement(ABC):
         """Sensor from the IMU, (3,) m, body axes."""
         self.initial_variance: Mapping[int, float] = {}
         """Variance of the error states of this sensor at the start, by index in the state."""
+
+        self.most_alike: int | None = None
+        """Samples in a row that may read the same to the last bit: more are no measurement. None:
+        any number; else it has `reading`."""
 
     def begin(self, state: NavigationState) -> NavigationState:
         """The state at the start with what this sensor adds to it."""
@@ -62,6 +77,14 @@ class Measurement(ABC):
             level: attitude (4,) of the vehicle, whose heading is zero where it is not known.
         """
         return None
+
+    def reading(self, sample: Any) -> Array:
+        """The values of a sample, of which `most_alike` may be the same."""
+        raise NotImplementedError
+
+    def about(self, state: NavigationState, sample: Any, rate: Array) -> Linear:
+        """The sample about the estimate, which is left as it is; arguments as of `correct`."""
+        raise NotImplementedError
 
     @abstractmethod
     def correct(self, state: NavigationState, sample: Any, rate: Array, gate: float) -> float:

@@ -26,14 +26,15 @@ from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.inertial.installation import rate_variance
-from uvms_observer.navigation.measurements.base import Measurement
-from uvms_observer.navigation.measurements.noise import as_white
+from uvms_observer.navigation.measurements.base import Linear, Measurement
+from uvms_observer.navigation.measurements.noise import as_white, most_alike
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     CURRENT,
     DVL_MISALIGNMENT,
     DVL_SCALE,
     FURTHER,
+    MOUNTING,
     SIZE,
     Fields,
     NavigationState,
@@ -51,6 +52,7 @@ class DvlVelocity(Measurement):
 
     size = 3
     needs_rate = True
+    follows = True
 
     def __init__(self, vehicle: Vehicle, section: Dvl, config: NavigationConfig) -> None:
         super().__init__(vehicle, section, config)
@@ -64,6 +66,7 @@ class DvlVelocity(Measurement):
                 DVL_SCALE: float(np.square(section.scale_error)),
                 **dict.fromkeys(range(DVL_MISALIGNMENT, DVL_MISALIGNMENT + 3), float(mounting**2)),
             }
+        self.most_alike = most_alike(section.noise_m_s, section.resolution_m_s, self.size)
         self._section, self._seabed = section, vehicle.environment.seabed_depth_m
         self._as_white = as_white(float(np.hypot(section.scale_error, mounting)), section.rate_hz)
 
@@ -76,13 +79,16 @@ class DvlVelocity(Measurement):
 
     def correct(self, state: NavigationState, sample: DvlSample, rate: Array, gate: float) -> float:
         """As `Measurement.correct`."""
-        in_water = sample.lock == WATER_LOCK
-        variance = self._variance + (WATER_NOISE_M_S**2 if in_water else 0.0)
-        variance += self._excess(sample)
+        variance, in_water = self._variance_of(sample), sample.lock == WATER_LOCK
         if not self._has_states:
             return self._correct_alone(state, sample, variance, rate, gate)
         turning = self.lever, rate, self._rate_variance
         return correct_velocity(tuple(state), sample.velocity, variance, *turning, in_water, gate)
+
+    def _variance_of(self, sample: DvlSample) -> float:
+        """White noise along each axis, m^2/s^2."""
+        in_water = sample.lock == WATER_LOCK
+        return self._variance + (WATER_NOISE_M_S**2 if in_water else 0.0) + self._excess(sample)
 
     def _excess(self, sample: DvlSample) -> float:
         """Variance that the message states beyond what the vehicle file knows of; the largest."""
@@ -99,21 +105,36 @@ class DvlVelocity(Measurement):
         """As `correct_velocity`, of a further DVL: scale and misalignment in the state are not
         its own, and its own count as noise that lasts.
         """
-        measured, own = sample.velocity, state.further.copy()
-        own[DVL_SCALE - FURTHER] = 0.0
-        own[DVL_MISALIGNMENT - FURTHER : DVL_MISALIGNMENT - FURTHER + 3] = 0.0
-        right = state._replace(further=own)
-        expected, H = velocity(right, self.lever, rate, sample.lock == WATER_LOCK)
-        H[:, DVL_SCALE] = 0.0
-        H[:, DVL_MISALIGNMENT : DVL_MISALIGNMENT + 3] = 0.0
-        arm = skew(self.lever)
-        variance += self._as_white * float(measured.dot(measured))
-        N = variance * np.eye(3) + self._rate_variance * (arm @ arm.T)
+        residual, H, N = self._about(state, sample, variance, rate)
         before = state.velocity.copy()
-        distance: float = correct(state, H, measured - expected, N, gate)
+        distance: float = correct(state, H, residual, N, gate)
         if distance <= gate:
             keep_reading(state, before)
         return distance
+
+    def reading(self, sample: DvlSample) -> Array:
+        """As `Measurement.reading`."""
+        return sample.velocity
+
+    def about(self, state: NavigationState, sample: DvlSample, rate: Array) -> Linear:
+        """As `Measurement.about`."""
+        return self._about(state, sample, self._variance_of(sample), rate)
+
+    def _about(
+        self, state: NavigationState, sample: DvlSample, variance: float, rate: Array
+    ) -> Linear:
+        measured, own, mounting = sample.velocity, state.further.copy(), list(MOUNTING)
+        if not self._has_states:
+            own[np.array(mounting) - FURTHER] = 0.0
+            variance += self._as_white * float(measured.dot(measured))
+        right = state._replace(further=own)
+        reading, H = velocity(right, self.lever, rate, sample.lock == WATER_LOCK)
+        if not self._has_states:
+            H[:, mounting] = 0.0
+        arm = skew(self.lever)
+        N = variance * np.eye(3) + self._rate_variance * (arm @ arm.T)
+        N += (arm * state.excess[:3]) @ arm.T
+        return Linear(measured - reading, H, N)
 
 
 @exact_inner
@@ -190,6 +211,8 @@ def correct_velocity(
     for i in range(3):
         for k in range(3):
             N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
+            for m in range(3):
+                N[i, k] += arm[i, m] * state.excess[m] * arm[k, m]
     before = state.velocity.copy()
     distance = correct(state, H, residual, N, gate)
     if distance <= gate:

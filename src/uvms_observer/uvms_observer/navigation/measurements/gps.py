@@ -25,7 +25,8 @@ class GpsPosition(Measurement):
         vertical = max(section.vertical_noise_m, floor)
         self._variance = np.array([horizontal, horizontal, vertical]) ** 2
         noise = section.horizontal_noise_m, section.horizontal_noise_m, section.vertical_noise_m
-        self._known: list[float] = np.square(noise).tolist()
+        x, y, z = np.square(noise).tolist()
+        self._known = x, y, z
         self._datum = (sea.datum_latitude_deg, sea.datum_longitude_deg)
 
     def usable(self, sample: GpsSample) -> bool:

@@ -10,7 +10,6 @@ import numpy as np
 
 from uvms_core.signals import Array, ImuSample, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
-from uvms_core.vehicle.sensors import Imu
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
@@ -22,7 +21,7 @@ from uvms_dynamics.kernels.rotations import (
 )
 from uvms_observer.navigation.arrays import transposed
 from uvms_observer.navigation.correction import correct
-from uvms_observer.navigation.inertial.installation import attitude_variance
+from uvms_observer.navigation.inertial.installation import attitude_variance, known_variance
 from uvms_observer.navigation.inertial.unknown_motion import ACCELERATION_M_S2
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.noise import with_stated
@@ -43,8 +42,7 @@ class Gyrocompass(Measurement):
     def __init__(self, vehicle: Vehicle, section: Any, config: NavigationConfig) -> None:
         super().__init__(vehicle, section, config)
         self.variance = attitude_variance(vehicle, config)
-        noise, bias = np.radians(_noise_deg(section)), np.radians(_bias_deg(section))
-        self._known: list[float] = (noise**2 + bias**2).tolist()
+        self._known = known_variance(section)[0]
         self._gravity = vehicle.environment.gravity_m_s2
         self._period = to_nanoseconds(1.0 / section.rate_hz)
         self._force_variance = (
@@ -65,14 +63,6 @@ class Gyrocompass(Measurement):
             force, variance = sample.linear_acceleration, self._force_variance
             return correct_gravity(tuple(state), force, self._gravity, variance, gate)
         return correct_attitude(tuple(state), sample.quaternion, self.variance_of(sample), gate)
-
-
-def _noise_deg(imu: Imu) -> list[float]:
-    return [imu.roll_pitch_noise_deg, imu.roll_pitch_noise_deg, imu.heading_noise_deg]
-
-
-def _bias_deg(imu: Imu) -> list[float]:
-    return [imu.roll_pitch_bias_deg, imu.roll_pitch_bias_deg, imu.heading_bias_deg]
 
 
 @exact_inner
@@ -128,5 +118,5 @@ def correct_gravity(
     N = np.zeros((3, 3))
     for i in range(3):
         residual[i] = measured[i] - residual[i]
-        N[i, i] = variance
+        N[i, i] = variance + state.excess[3 + i]
     return correct(state, H, residual, N, gate)

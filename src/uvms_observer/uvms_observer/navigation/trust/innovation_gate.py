@@ -17,6 +17,7 @@ import numpy as np
 from scipy.special import gammaincinv
 
 from uvms_core.signals import Array
+from uvms_dynamics.kernels.jit import exact_kernel
 from uvms_observer.navigation.state import WIDEST
 from uvms_observer.navigation.trust import consistency
 
@@ -61,6 +62,10 @@ class Away(NamedTuple):
     level: Array  # (size,) running mean of the residuals since then
     chances: int = 0  # samples left among which it may agree
 
+    def back(self, residual: Array) -> "Away":
+        """After a jump back, to this residual."""
+        return Away(self.by, residual.copy(), CHANCES)
+
 
 class Tally(NamedTuple):
     """Counts of one sensor's samples."""
@@ -97,11 +102,10 @@ class InnovationGate:
         self._return = quantile(size, RETURNED)
         # a sample less the running mean, which has a share LEVEL / (2 - LEVEL) of its variance
         self._jump = quantile(size, JUMP) * (1.0 + LEVEL / (2.0 - LEVEL))
-        self.keep = 1.0 - 1.0 / max(FEW, WINDOW_S / period_s)
         stays = consistency.keep_of(period_s)
         self.bound = consistency.bound(size, stays)
-        self._new = 1.0 - stays
-        self._weight = (1.0 - self.keep**2) ** 0.5
+        self.weights = size, 1.0 - 1.0 / max(FEW, WINDOW_S / period_s), 1.0 - stays
+        """Last arguments of `followed`."""
 
     def apply(
         self, tally: Tally, stamp: int, correct: Callable[[float], float], innovation: Array
@@ -121,15 +125,11 @@ class InnovationGate:
             limit = self._return if self._may_come_back(away, innovation) else -1.0
         distance = correct(limit)
         if distance <= limit:
-            mean = self.keep * tally.mean + self._weight * innovation[0] / _or_one(innovation[2])
-            return self.accepted(tally, stamp, distance, mean)
+            before = tally.distance, tally.level, tally.mean
+            return accepted(
+                tally, stamp, 1, *followed(*before, distance, innovation, *self.weights)
+            )
         return self.rejected(tally, stamp, innovation, away)
-
-    def accepted(self, tally: Tally, stamp: int, distance: float, mean: Array) -> Tally:
-        """The tally after a sample that was used, of this distance, and the mean with it."""
-        level = tally.level + self._new * (distance / self._size - tally.level)
-        total = tally.distance + distance
-        return Tally(tally.accepted + 1, tally.gated, 0, None, stamp, total, mean, None, level)
 
     def rejected(
         self, tally: Tally, stamp: int, innovation: Array, away: Away | None = None
@@ -139,6 +139,11 @@ class InnovationGate:
             away = self._jumped(innovation)
         since = tally.since if tally.row else stamp
         return tally._replace(gated=tally.gated + 1, row=tally.row + 1, since=since, away=away)
+
+    def refused(self, tally: Tally, stamp: int) -> Tally:
+        """The tally after a sample that is no measurement, whatever it reads."""
+        since = tally.since if tally.row else stamp
+        return tally._replace(gated=tally.gated + 1, row=tally.row + 1, since=since)
 
     def _jumped(self, innovation: Array) -> Away | None:
         """What to remember of the first sample that was rejected."""
@@ -163,6 +168,36 @@ class InnovationGate:
         return float(np.square(change / innovation[1, : self._size]).sum())
 
 
-def _or_one(std: Array) -> Array:
-    """Standard deviations, 1 for those that are 0 as there is nothing measured."""
-    return np.where(std > 0.0, std, 1.0)
+def accepted(
+    tally: Tally, stamp: int, count: int, total: float, level: float, mean: Array
+) -> Tally:
+    """The tally after so many samples that were used, the last of this stamp; see `followed`."""
+    return Tally(tally.accepted + count, tally.gated, 0, None, stamp, total, mean, None, level)
+
+
+@exact_kernel
+def followed(
+    total: float,
+    level: float,
+    mean: Array,
+    distance: float,
+    innovation: Array,
+    size: int,
+    keep: float,
+    new: float,
+) -> tuple[float, float, Array]:
+    """Sum of the distances, level and mean of a tally after a sample that was used.
+
+    Args:
+        total, level, mean: before it.
+        distance: of its residual, squared.
+        innovation: of the state after it.
+        size: of the measurement.
+        keep: share of the mean that stays.
+        new: weight of the sample in the level.
+    """
+    after, weight = np.zeros(WIDEST), np.sqrt(1.0 - keep * keep)
+    for i in range(size):
+        std = innovation[2, i] if innovation[2, i] > 0.0 else 1.0
+        after[i] = keep * mean[i] + weight * innovation[0, i] / std
+    return total + distance, level + new * (distance / size - level), after

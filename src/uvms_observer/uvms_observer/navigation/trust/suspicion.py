@@ -45,6 +45,9 @@ NEXT = 4
 """Of the begins, the latest ones, at which such a fault is looked for: it shows at once."""
 LIKELY = 0.999
 """Share of right explanations whose residuals are as small as those of the trial must be."""
+BETTER = 6.0
+"""By which the squared distances of an explanation may add up to more than those of a sensor that
+is off: a factor of 20 between their likelihoods."""
 MISSED = 0.01
 """Share of samples that a right explanation may reject: a gate rejects good ones, too."""
 MEMORY = to_nanoseconds(5.0)
@@ -94,9 +97,17 @@ def tried(steps: Sequence[Step], suspect: Suspect, now: Estimator) -> Trial | No
     names = {suspect.name, *_rejected(now)}
     for begin, doubt in _explanations(steps, suspect):
         found = _tried_from(steps, begin, doubt, names)
-        if found is not None:
+        if found is not None and _fits_better(suspect.name, steps[begin].before, found[1], now):
             return found
     return None
+
+
+def _fits_better(name: str, before: Estimator, after: Estimator, now: Estimator) -> bool:
+    """Whether the samples fit at least as well as if their sensor were off since a jump."""
+    first, last = before.tallies[name], after.tallies[name]
+    expected = (last.accepted - first.accepted) * after.size_of(name)
+    misfit = last.distance - first.distance - expected
+    return misfit <= now.misfit_of(name) + BETTER
 
 
 def _explanations(steps: Sequence[Step], suspect: Suspect) -> list[tuple[int, Doubt]]:

@@ -6,6 +6,7 @@ said to be uncertain: a filter that may be wrong says so. Not where it is beyond
 unit could have made of the time since the last sample that fitted: then the sensor lies.
 """
 
+from collections.abc import Mapping
 from typing import NamedTuple
 
 import numpy as np
@@ -67,14 +68,19 @@ def _is_possible(change: Array, P: Array, tally: Tally, stamp: int) -> bool:
     return bool((np.abs(change) <= limits + SIGMAS * np.sqrt(np.diag(P)[:9])).all())
 
 
-def widened(P: Array, doubts: list[tuple[Doubt, Tally]], stamp: int) -> Array | None:
+def widened(
+    P: Array, doubts: Mapping[str, Doubt], tallies: Mapping[str, Tally], stamp: int
+) -> Array | None:
     """The covariance with all that is undecided at `stamp`, ns; None where nothing is.
+
+    Both by the name of the sensor.
 
     An error that grows with the square of time has grown by ((n + 1) / n)^2 until the sample after
     the n-th.
     """
     wider = None
-    for each, tally in doubts:
+    for name, each in doubts.items():
+        tally = tallies[name]
         if each.is_open and tally.since is not None and stamp - tally.since < DECIDED:
             wider = P.copy() if wider is None else wider
             growth = ((tally.row + 1) / tally.row) ** 2
