@@ -32,7 +32,8 @@ def believed(seed, current, pose, seconds, *settings):
         (9, [-0.05, 0.18, 0.0], "{position_m: [-3.9, 3.5, -0.7], yaw_deg: 124}", 8.0),
         (15, [-0.2, -0.03, 0.0], "{position_m: [-0.2, 3.7, 0.0], yaw_deg: -35}", 8.0),
         (2, [0.2, 0.1, 0.0], "{yaw_deg: 170}", 12.0),
-        (3, [0.0, -0.2, 0.0], "{yaw_deg: -120}", 12.0),
+        (3, [0.1, -0.2, 0.0], "{yaw_deg: -150}", 12.0),
+        (5, [-0.15, 0.15, 0.0], "{yaw_deg: 135}", 12.0),
     ],
 )
 def test_what_a_current_does_to_a_hull_that_moves_is_no_fault(seed, current, pose, seconds):
