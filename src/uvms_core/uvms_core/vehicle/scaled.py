@@ -32,11 +32,12 @@ POWERS: dict[str, float] = {
 That of the end stops' dissipation is chosen so that the rate at which a stop takes energy from a
 joint, effort x dissipation / inertia, stays: a small copy then needs no shorter integration step.
 That of a thruster's power is the actuator disc's, T^1.5 over the root of an area. A battery holds
-as much for its mass, and is so many cells more or less side by side, with the same voltage.
+as much for its mass, and is so many cells more or less side by side, with the same voltage. The
+hotel load goes with the thrusters' power.
 """
 SECTIONS = ("hull", "thrusters", "arm")
-"""What is scaled, and the battery; of the sensors only the places are, and water and tether are the
-same."""
+"""What is scaled, and the electrical side; of the sensors only the places are, and water and tether
+are the same."""
 PRODUCT = re.compile(r"[XYZKMN]_u[vwpqr]")
 """Products of velocities in a force or moment, such as Y_uv."""
 MOMENTS, TURNS = "KMN", "pqr"
@@ -48,9 +49,7 @@ def scaled_data(data: dict[str, Any], factor: float) -> dict[str, Any]:
     for section in SECTIONS:
         copy[section] = _scaled(data[section], factor)
     copy["sensors"] = _places(data["sensors"], factor)
-    if copy.get("electrical"):  # the hotel load is that of the same instruments
-        battery = _scaled(copy["electrical"].get("battery"), factor)
-        copy["electrical"] = {**copy["electrical"], "battery": battery}
+    copy["electrical"] = _scaled(data.get("electrical"), factor)
     hull = copy["hull"]
     for body in (hull, *copy["arm"]["links"]):
         body["added_mass"] = _matrix(body["added_mass"], factor, 3, 1)

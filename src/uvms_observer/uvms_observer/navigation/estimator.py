@@ -10,7 +10,8 @@ from uvms_core.sensors import INERTIAL
 from uvms_core.signals import Array, ImuSample, Odometry, to_nanoseconds, to_seconds
 from uvms_observer.navigation.begin.first_state import first_state
 from uvms_observer.navigation.begin.resume import LOST_DEPTH_M, LOST_M, LOST_SPEED_M_S, lost, placed
-from uvms_observer.navigation.inertial.at_once import alike, packed, take_inertial
+from uvms_observer.navigation.inertial.alike import alike
+from uvms_observer.navigation.inertial.at_once import packed, take_inertial
 from uvms_observer.navigation.inertial.installation import Installation, Stated
 from uvms_observer.navigation.inertial.made_up import make_up_for
 from uvms_observer.navigation.inertial.screen import (
@@ -33,9 +34,10 @@ from uvms_observer.navigation.state import (
     NavigationState,
     empty_state,
 )
-from uvms_observer.navigation.trust import consistency, offsets, undecided
+from uvms_observer.navigation.trust import offsets, undecided
 from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally, accepted
 from uvms_observer.navigation.trust.offsets import Offsets
+from uvms_observer.navigation.trust.sound import is_sound
 from uvms_observer.navigation.trust.stuck import Repeated, is_stuck
 from uvms_observer.navigation.trust.undecided import Doubt
 
@@ -276,10 +278,9 @@ class Estimator:
         The position is still known as far as the vehicle cannot have moved since.
         """
         now = self.time or 0
-        here = lost(now, np.array(self._config.initial_position_m))
-        if consistency.is_sound(self.state):
-            here = placed(here, self.odometry(), to_seconds(now - since))
-        self.start = here
+        self.start = lost(now, np.array(self._config.initial_position_m))
+        if is_sound(self.state):
+            self.start = placed(self.start, self.odometry(), to_seconds(now - since))
         self.tallies = {
             name: Tally(tally.accepted, tally.gated) for name, tally in self.tallies.items()
         }

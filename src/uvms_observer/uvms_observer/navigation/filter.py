@@ -38,6 +38,7 @@ from uvms_observer.navigation.trust.sensor_health import (
     joined,
     trouble_of,
 )
+from uvms_observer.navigation.trust.sound import is_sound
 
 
 class NavigationFilter:
@@ -276,7 +277,7 @@ class NavigationFilter:
     def _reset_where_lost(self, stamp: int) -> None:
         """Begin anew where the estimate cannot be right: nothing that is known explains it."""
         since = consistency.given_up(self._estimator.tallies, stamp)
-        if not consistency.is_sound(self._estimator.state):
+        if not is_sound(self._estimator.state):
             since = stamp
         if since is not None:
             self._estimator.restart(since)

@@ -4,48 +4,20 @@ That is: readings near the one before them, no gaps between them, a gyrocompass 
 Each carries the state, then its attitude corrects it.
 """
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from uvms_core.sensors import INERTIAL
 from uvms_core.signals import NANOSECONDS, Array, ImuSample
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
-from uvms_observer.navigation.inertial.installation import Stated
 from uvms_observer.navigation.inertial.unknown_motion import GAP
 from uvms_observer.navigation.measurements.imu import correct_attitude
 from uvms_observer.navigation.propagation import propagate
-from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import Fields
 from uvms_observer.navigation.trust.innovation_gate import followed
 
 QUATERNION, RATE, FORCE, WIDTH = 0, 4, 7, 10
 """Where they begin in a row of `packed`, and how long it is."""
-
-
-def alike(
-    readings: Sequence[Reading], excess_of: Callable[[ImuSample], Stated]
-) -> tuple[list[ImuSample], Stated | None]:
-    """The unit's samples that come first, with an attitude, and all as noisy as they say.
-
-    Args:
-        readings: in the order of their stamps.
-        excess_of: what noise a sample states.
-
-    Returns:
-        The samples, and what they state; None where there are none.
-    """
-    samples: list[ImuSample] = []
-    stated: Stated | None = None
-    for reading in readings:
-        if reading.name != INERTIAL.name or not reading.sample.oriented:
-            break
-        excess = excess_of(reading.sample)
-        if stated is not None and excess != stated:
-            break
-        stated = excess
-        samples.append(reading.sample)
-    return samples, stated
 
 
 def packed(samples: Sequence[ImuSample]) -> tuple[Array, Array]:

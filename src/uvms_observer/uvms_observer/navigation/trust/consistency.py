@@ -12,9 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from uvms_core.diagnostics import WARN, Trouble
-from uvms_core.signals import Array, to_nanoseconds
-from uvms_dynamics.kernels.jit import exact_kernel
-from uvms_observer.navigation.state import NavigationState
+from uvms_core.signals import to_nanoseconds
 
 if TYPE_CHECKING:
     from uvms_observer.navigation.trust.innovation_gate import Tally
@@ -52,24 +50,6 @@ def trouble_of(beyond: Mapping[str, float], resets: int) -> Trouble | None:
     if resets:
         texts.append(f"the estimate was given up and begun anew {resets} times")
     return Trouble(WARN, "; ".join(texts)) if texts else None
-
-
-def is_sound(state: NavigationState) -> bool:
-    """Whether the state is finite and its variances are not negative."""
-    return _is_sound(state.covariance, state.position, state.velocity)
-
-
-@exact_kernel
-def _is_sound(P: Array, position: Array, velocity: Array) -> bool:
-    total = 0.0
-    for i in range(P.shape[0]):
-        for j in range(P.shape[1]):
-            total += P[i, j]
-        if P[i, i] < 0.0:
-            return False
-    for i in range(3):
-        total += position[i] + velocity[i]
-    return bool(np.isfinite(total))
 
 
 def given_up(tallies: Mapping[str, "Tally"], stamp: int) -> int | None:
