@@ -30,7 +30,7 @@ def watch(stamp, _):
 simulate(scenario, vehicle, scenario.goal.build(vehicle, scenario.plant), progress=watch)
 """
 GROWTH_MIB = 6.0
-"""What the allocator may still add after the first 24th of a run, in 6 minutes as in 24 hours."""
+"""What the allocator may still add after the first third of a run, in 6 minutes as in 24 hours."""
 
 
 @pytest.mark.parametrize(
@@ -45,7 +45,7 @@ def test_the_loop_in_process(hours, saw):
     done = subprocess.run(command, capture_output=True, text=True, check=True)
     sizes = [float(line) for line in done.stdout.split()]
     assert len(sizes) == 25
-    grown = max(sizes[2:]) - sizes[2]
+    grown = max(sizes[8:]) - sizes[8]  # kernels that are loaded at their first use come before
     saw(f"{hours:g} simulated hours of `hover` in process", f"{grown:.1f} MiB more memory")
     assert grown < GROWTH_MIB
 
