@@ -162,9 +162,8 @@ class Estimator:
         return odometry(self.time or 0, state, imu.body, self._now[0], imu.rate_variance)
 
     def _align(self, sample: ImuSample) -> None:
-        begun = first_state(
-            sample, self._heading, self._measurements, self._imu, self._config, self.start
-        )
+        given = self._measurements, self._imu, self._config, self.start
+        begun = first_state(sample, self._heading, *given)
         if begun is None:
             return
         self.state, sample = begun
