@@ -17,6 +17,7 @@ likelihood ratio approach", whose growing bank of onsets is cut to the window he
 import numpy as np
 
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.products import inner_product
 
 NONE, WEAK, STUCK = 0, 1, 2
 """What is found: nothing, a share that is left, a thrust that does not follow."""
@@ -89,25 +90,17 @@ def _without_water(residual, water, roots, left, basis):
     left, basis = left.reshape(-1), basis.reshape(p, -1)
     for j in range(p):
         for i in range(j):
-            same = _product(basis[i], basis[j]) + _product(known[i], known[j])
+            same = inner_product(basis[i], basis[j]) + inner_product(known[i], known[j])
             _take_off(basis[j], same, basis[i])
             _take_off(known[j], same, known[i])
-        size = np.sqrt(_product(basis[j], basis[j]) + _product(known[j], known[j]))
+        size = np.sqrt(inner_product(basis[j], basis[j]) + inner_product(known[j], known[j]))
         basis[j] /= size
         known[j] /= size
-    total = _product(left, left)
+    total = inner_product(left, left)
     for j in range(p):
-        same = _product(basis[j], left)
+        same = inner_product(basis[j], left)
         _take_off(left, same, basis[j])
         total -= same * same
-    return total
-
-
-@exact_inner
-def _product(a, b):
-    total = 0.0
-    for k in range(a.shape[0]):
-        total += a[k] * b[k]
     return total
 
 

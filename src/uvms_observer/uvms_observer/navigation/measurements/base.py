@@ -80,11 +80,11 @@ class Measurement(ABC):
 
     def reading(self, sample: Any) -> Array:
         """The values of a sample, of which `most_alike` may be the same."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} lacks reading")
 
     def about(self, state: NavigationState, sample: Any, rate: Array) -> Linear:
         """The sample about the estimate, which is left as it is; arguments as of `correct`."""
-        raise NotImplementedError
+        raise NotImplementedError(f"{type(self).__name__} follows, but lacks about")
 
     @abstractmethod
     def correct(self, state: NavigationState, sample: Any, rate: Array, gate: float) -> float:
