@@ -243,7 +243,7 @@ class Estimator:
 
     def _bound_speed(self) -> None:
         """Where nothing tells the velocity, it is that of such a vehicle."""
-        now = self._imu.speed, self.time or 0
+        now = self._imu.speed, self._imu.hull, self.time or 0
         self.state, self._offsets = offsets.bound_speed(self.state, self._offsets, *now)
 
     def _trend(self) -> Trend:

@@ -12,6 +12,7 @@ from uvms_core.diagnostics import Trouble
 from uvms_core.errors import SignalError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import (
+    Allocation,
     DvlSample,
     GpsSample,
     ImuSample,
@@ -61,6 +62,8 @@ class NavigationFilter:
         self._estimator = Estimator(
             imu, self._instruments.measurements, config, self._instruments.periods
         )
+        self._hull = imu.hull.motion
+        self._last: Odometry | None = None
         self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
@@ -90,6 +93,10 @@ class NavigationFilter:
         """
         self._estimator.start = estimate
         self._initialised = True
+
+    def inform(self, allocation: Allocation | None) -> None:
+        """The thrusts commanded at the tick before, ahead of a step; None: not known."""
+        self._hull.inform(allocation)
 
     def step(
         self,
@@ -179,8 +186,11 @@ class NavigationFilter:
         for reading in readings:
             self._newest[reading.name] = reading.stamp
         self._stamp = stamp
+        if self._last is not None:
+            self._hull.note(stamp, self._last)
         self._run(stamp, readings)
-        return self._estimator.odometry()
+        self._last = self._estimator.odometry()
+        return self._last
 
     def waits_for(self) -> str:
         """What the filter still waits for before its estimate means anything; empty: nothing."""
