@@ -48,9 +48,9 @@ class Thrusts:
         nu, rotation = self._nu(t), self._motion.rotation(t)
         nu_dot = (self._nu(t + _H) - self._nu(t - _H)) / (2.0 * _H)
         none = np.zeros(len(self._q))
-        wrench = inverse_dynamics(
-            self._model, rotation.as_quat(), nu, nu_dot, self._q, none, none
-        )[:6]
+        wrench = inverse_dynamics(self._model, rotation.as_quat(), nu, nu_dot, self._q, none, none)[
+            :6
+        ]
         if self._pull is not None:
             wrench[:3] -= rotation.inv().apply(self._pull(t))
         return wrench
