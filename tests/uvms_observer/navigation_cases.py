@@ -6,8 +6,8 @@ The tests judge it, and `benchmarks/navigation_table.py` prints it.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
-from scipy.spatial.transform import Rotation
 from hull_truth import TICK
+from scipy.spatial.transform import Rotation
 from sensor_truth import Motion, Rig, Waves
 
 from uvms_core.signals import to_nanoseconds, to_seconds

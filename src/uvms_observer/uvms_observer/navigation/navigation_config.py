@@ -94,7 +94,7 @@ class NavigationConfig(PluginConfig, StartConfig):
         " thrusts tell the velocity because no sensor does",
     )
     unmodelled_force: float = Field(
-        0.02,
+        0.03,
         gt=0.0,
         le=1.0,
         description="std of the force that acts on the vehicle beside thrust and drag, such as a"

@@ -31,9 +31,9 @@ from uvms_observer.navigation.trust.innovation_gate import JUMP, quantile
 from uvms_observer.navigation.trust.lasting import AXES, OWN
 from uvms_observer.navigation.trust.top_speed import EVERY, MOST_M_S
 
-LASTS_S = 60.0
+LASTS_S = 45.0
 """How long a force that the model does not know stays as it is, s: a tether's, or trim. The offset
-walks as one that is correlated so long does at first, but towards nothing: most of it is current."""
+walks as one that is correlated so long does at first, but not to zero: most of it is current."""
 MEAN_S = 5.0
 """Over which the residuals are averaged, s."""
 BEGIN = 0.25
@@ -41,7 +41,7 @@ BEGIN = 0.25
 END = 0.1
 """And from here on a sensor tells the velocity again."""
 TOO_FAR = 3.0
-"""Standard deviations of water and model together: a hull that is held says as much by its thrust."""
+"""Standard deviations of water and model together; a hull that is held is farther off."""
 LEAST_M_S = 0.01
 """Std of the velocity below which the model is not asked."""
 MANY = 2

@@ -21,7 +21,7 @@ from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_observer.lagged_thrusts import LaggedThrusts
 
 MEMORY = to_nanoseconds(30.0)
-"""How long intervals are kept, ns: a hull that starts with a wrong velocity has then found its own."""
+"""How long intervals are kept, ns: by then a hull has forgotten the velocity that it began with."""
 SETTLED = to_nanoseconds(10.0)
 """How long the thrusts must have been known before the model counts, ns."""
 HOLDS = to_nanoseconds(0.2)
@@ -178,7 +178,7 @@ def through_water(
 
 
 @exact_inner
-def _acceleration(model, inverse_mass, quat, rate, velocity, force, q):  # type: ignore[no-untyped-def]
+def _acceleration(model, inverse_mass, quat, rate, velocity, force, q):
     nu = np.empty(6)
     nu[:3], nu[3:] = velocity, rate
     none = np.zeros_like(q)
