@@ -42,7 +42,7 @@ END = 0.1
 """And from here on a sensor tells the velocity again."""
 TOO_FAR = 3.0
 """Standard deviations of water and model together; a hull that is held is farther off."""
-LEAST_M_S = 0.01
+LEAST_M_S = 0.02
 """Std of the velocity below which the model is not asked."""
 MANY = 2
 """Samples in a row that cannot be, by which the model is wrong."""
