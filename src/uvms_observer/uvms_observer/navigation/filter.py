@@ -25,6 +25,7 @@ from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation.begin.initialisation import lacking
 from uvms_observer.navigation.begin.levelling import check_gravity
 from uvms_observer.navigation.estimator import Estimator
+from uvms_observer.navigation.inertial.condition import ConditionCheck
 from uvms_observer.navigation.inertial.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
@@ -39,6 +40,7 @@ from uvms_observer.navigation.trust.sensor_health import (
     trouble_of,
 )
 from uvms_observer.navigation.trust.sound import is_sound
+from uvms_observer.navigation.trust.unit_trouble import UnitTrouble
 
 
 class NavigationFilter:
@@ -61,6 +63,7 @@ class NavigationFilter:
         self._estimator = Estimator(
             imu, self._instruments.measurements, config, self._instruments.periods
         )
+        self._condition, self._unit_trouble = ConditionCheck(vehicle), UnitTrouble(vehicle)
         self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
@@ -113,8 +116,10 @@ class NavigationFilter:
             NotAlignedError: no IMU sample has come yet.
         """
         groups = {"imu": imu, "dvl": dvl, "pressure": pressure, "gps": gps, **further}
+        before = self._condition.copied()
         good, faults = self._screen(stamp, groups)
         if faults:
+            self._condition.back_to(before)
             raise faults[0]
         return self._step(stamp, good)
 
@@ -148,6 +153,7 @@ class NavigationFilter:
                 self._check_start(reading)
                 reading = self._of_unit_length(reading)
                 checks.check(reading.name, reading.sample)
+                reading = self._of_a_vehicle(reading)
             except SignalError as fault:
                 faults.append(fault)
             else:
@@ -168,6 +174,14 @@ class NavigationFilter:
         self.normalized += 1
         unit = reading.sample.quaternion / np.linalg.norm(reading.sample.quaternion)
         return reading._replace(sample=replace(reading.sample, quaternion=unit))
+
+    def _of_a_vehicle(self, reading: Reading) -> Reading:
+        """A reading that a vehicle under water may give, and as noisy as it is."""
+        if reading.name == INERTIAL.name:
+            return reading._replace(sample=self._condition.judged(reading.name, reading.sample))
+        if fault := self._instruments.measurements[reading.name].fault(reading.sample):
+            raise SignalError(f"{reading.name}.{fault}")
+        return reading
 
     def _step(
         self, stamp: int, readings: list[Reading], faults: Sequence[SignalError] = ()
@@ -221,6 +235,7 @@ class NavigationFilter:
         return joined(
             trouble_of(self.health()),
             consistency.trouble_of(self._estimator.inconsistent(), self.resets),
+            self._unit_trouble(self._estimator.state, self._condition.attitude_is_frozen),
         )
 
     def status(self) -> dict[str, int | float | str]:

@@ -27,7 +27,7 @@ from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.inertial.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Linear, Measurement
-from uvms_observer.navigation.measurements.noise import as_white, most_alike
+from uvms_observer.navigation.measurements.noise import MOST, as_white, most_alike
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     CURRENT,
@@ -97,7 +97,7 @@ class DvlVelocity(Measurement):
             return 0.0
         known = self._noise**2 + (self._scale * sample.velocity) ** 2
         excess = float((stated - known).max())
-        return excess if excess > 0.0 else 0.0
+        return min(excess, MOST) if excess > 0.0 else 0.0
 
     def _correct_alone(
         self, state: NavigationState, sample: DvlSample, variance: float, rate: Array, gate: float

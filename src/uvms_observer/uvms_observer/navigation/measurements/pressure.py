@@ -13,6 +13,11 @@ from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import DEPTH_BIAS, FURTHER, SIZE, Fields, NavigationState
 
+ABOVE_M = 2.0
+"""Depth above the surface that no vehicle has, whatever the weather has done to the air."""
+DEEPEST_M = 12_000.0
+"""Deeper than any sea."""
+
 
 class PressureDepth(Measurement):
     """(p + R d)_z + b_p + n, with the bias b_p in the state; pressure grows by rho g with depth."""
@@ -31,6 +36,16 @@ class PressureDepth(Measurement):
             self.initial_variance = {DEPTH_BIAS: float(np.square(section.bias_pa / self._gradient))}
         else:
             self._variance += as_white(section.bias_pa / self._gradient, section.rate_hz)
+
+    def fault(self, sample: PressureSample) -> str:
+        """As `Measurement.fault`."""
+        depth = (sample.pressure - self._surface) / self._gradient
+        if -ABOVE_M <= depth <= DEEPEST_M:
+            return ""
+        return (
+            f"pressure is {sample.pressure:.6g} Pa, a depth of {depth:.3g} m; it must be between"
+            f" {-ABOVE_M:g} and {DEEPEST_M:g} m: the absolute pressure in Pa, with that of the air"
+        )
 
     def correct(
         self, state: NavigationState, sample: PressureSample, rate: Array, gate: float
