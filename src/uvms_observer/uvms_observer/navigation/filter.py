@@ -40,7 +40,11 @@ from uvms_observer.navigation.trust.sensor_health import (
     trouble_of,
 )
 from uvms_observer.navigation.trust.sound import is_sound
+from uvms_observer.navigation.trust.top_speed import is_impossible
 from uvms_observer.navigation.trust.unit_trouble import UnitTrouble
+
+SWEPT = to_nanoseconds(2.0)
+"""How long an estimate has been wrong, at least, that has got a velocity no vehicle has."""
 
 
 class NavigationFilter:
@@ -60,6 +64,7 @@ class NavigationFilter:
         config = config or NavigationConfig()
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
+        self._speed = imu.speed
         self._estimator = Estimator(
             imu, self._instruments.measurements, config, self._instruments.periods
         )
@@ -283,6 +288,8 @@ class NavigationFilter:
 
     def _go_back_for(self, late: list[Reading]) -> None:
         """Take readings that came late at their own stamps, and repeat everything since."""
+        if not self._steps:  # it has begun anew since then
+            return
         again = [self._steps.pop()]
         while self._steps and again[0].begin >= late[0].stamp:
             again.insert(0, self._steps.pop())
@@ -291,9 +298,12 @@ class NavigationFilter:
 
     def _reset_where_lost(self, stamp: int) -> None:
         """Begin anew where the estimate cannot be right: nothing that is known explains it."""
-        since = consistency.given_up(self._estimator.tallies, stamp)
-        if not is_sound(self._estimator.state):
+        tallies, state = self._estimator.tallies, self._estimator.state
+        since = consistency.given_up(tallies, stamp)
+        if not is_sound(state):
             since = stamp
+        elif is_impossible(state, self._speed):
+            since = min(stamp - SWEPT, consistency.contradicted(tallies, stamp))
         if since is not None:
             self._estimator.restart(since)
             self._steps.clear()

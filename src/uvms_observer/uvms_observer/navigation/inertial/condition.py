@@ -34,6 +34,9 @@ ATTITUDE_FROZEN_S = 0.5
 """The same of attitudes, which many units compute at a tenth of the rate."""
 RATE_FLOOR_RAD_S, FORCE_FLOOR_M_S2 = 1e-3, 0.02
 """Std of white noise that makes no difference, whatever the vehicle file says."""
+QUIET, SEEN = 0.3, 30
+"""So many |d| above this share of the median of a unit's noise show that it has noise at all: one
+that is computed without, in a simulation or a test, may well read the same."""
 ROUGH = 3.0
 """Times the noise of the vehicle file from which on it is noisier than that."""
 STEP = 1.1
@@ -53,6 +56,7 @@ class Condition(NamedTuple):
 
     values: Array  # (5, 6) rates and forces of the last two samples; medians of |d|; how many |d|
     # in a row have been far above it; of how many samples the noise has to be made up for
+    seen: Array  # (2,) how many |d| of rates and of forces have been noise
     attitude: Array  # (4,) of the last one
     same: Array  # (3,) samples in a row that have been the same: attitude, rate, force
     times: Array  # (2,) ns, of the last two
@@ -83,9 +87,10 @@ class ConditionCheck:
         )
         self._period = to_nanoseconds(1.0 / imu.rate_hz)
         self._usual = MEDIAN * self._noise
+        self._quiet = QUIET * MEDIAN * np.array([gyro, force])
         none = np.zeros((5, 6))
         none[2] = self._usual
-        self._now = Condition(none, np.zeros(4), np.zeros(3), np.full(2, -np.inf))
+        self._now = Condition(none, np.zeros(2), np.zeros(4), np.zeros(3), np.full(2, -np.inf))
 
     def copied(self) -> Condition:
         """What is known by now."""
@@ -115,21 +120,25 @@ class ConditionCheck:
                 f" {self._least:.3g} to {self._most:.3g} m/s^2 under water, with gravity"
             )
         readings = sample.quaternion, rate, force
-        noisy = follow(*self._now, self._usual, sample.stamp, *readings, self._period)
+        noisy = follow(*self._now, self._usual, self._quiet, sample.stamp, *readings, self._period)
         for part in (RATE, FORCE):
-            if self._now.same[part] > self._alike[part]:
+            if self._is_frozen(part):
                 raise SignalError(
                     f"{name}.{PARTS[part]} has been the same to the last bit for"
                     f" {self._now.same[part]:.0f} samples: it is no measurement"
                 )
-        if sample.oriented and self._now.same[ATTITUDE] > self._alike[ATTITUDE]:
+        if sample.oriented and self.attitude_is_frozen:
             sample = replace(sample, oriented=False)
         return self._with_noise(sample) if noisy > ROUGH else sample
 
     @property
     def attitude_is_frozen(self) -> bool:
         """Whether the attitude has been the same for too long."""
-        return bool(self._now.same[ATTITUDE] > self._alike[ATTITUDE])
+        return self._is_frozen(ATTITUDE)
+
+    def _is_frozen(self, part: int) -> bool:
+        seen = self._now.seen[max(part - 1, 0)]
+        return bool(seen > SEEN and self._now.same[part] > self._alike[part])
 
     def _with_noise(self, sample: ImuSample) -> ImuSample:
         """The sample with the noise that it has, where that is beyond the vehicle file.
@@ -165,10 +174,12 @@ def _longest(std: float, step: float, least: float) -> float:
 @exact_kernel
 def follow(
     values: Array,
+    seen: Array,
     attitude: Array,
     same: Array,
     times: Array,
     usual: Array,
+    quiet: Array,
     stamp: float,
     quaternion: Array,
     rate: Array,
@@ -178,8 +189,9 @@ def follow(
     """Take a sample into a `Condition`; returns the largest median of |d| over the usual one.
 
     Args:
-        values, attitude, same, times: the condition.
+        values, seen, attitude, same, times: the condition.
         usual: (6,) median of |d| by the noise of the vehicle file, below which none falls.
+        quiet: (2,) |d| that are noise, of rates and of forces.
         stamp: ns.
         quaternion, rate, force: the sample.
         period: ns, between two.
@@ -201,6 +213,8 @@ def follow(
         value = rate[i] if i < 3 else force[i - 3]
         if even:
             d = abs(value - 2.0 * values[0, i] + values[1, i])
+            part = i // 3
+            seen[part] += 1.0 if d > quiet[part] > 0.0 else 0.0
             values[3, i] = values[3, i] + 1.0 if d > FAR * values[2, i] else 0.0
             leaps = values[3, i] >= ROW
             values[4, i] = values[3, i] if leaps else 1.0

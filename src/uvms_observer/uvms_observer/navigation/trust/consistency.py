@@ -65,3 +65,11 @@ def given_up(tallies: Mapping[str, "Tally"], stamp: int) -> int | None:
     if len(since) < TOGETHER or stamp - since[TOGETHER - 1] < FOR:
         return None
     return since[TOGETHER - 1]
+
+
+def contradicted(tallies: Mapping[str, "Tally"], stamp: int) -> int:
+    """Since when (ns) some sensor has contradicted the estimate at `stamp`."""
+    return min(
+        (tally.since for tally in tallies.values() if tally.row and tally.since is not None),
+        default=stamp,
+    )
