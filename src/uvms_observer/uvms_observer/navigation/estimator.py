@@ -14,12 +14,7 @@ from uvms_observer.navigation.inertial.alike import alike
 from uvms_observer.navigation.inertial.at_once import packed, take_inertial
 from uvms_observer.navigation.inertial.installation import Installation, Stated
 from uvms_observer.navigation.inertial.made_up import make_up_for
-from uvms_observer.navigation.inertial.screen import (
-    ScreenMemory,
-    Trend,
-    remember,
-    still,
-)
+from uvms_observer.navigation.inertial.screen import ScreenMemory, Trend, remember, still
 from uvms_observer.navigation.inertial.unknown_motion import GAP, gap_spread, spread
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.imu import Gyrocompass
@@ -150,6 +145,8 @@ class Estimator:
         if not self._memory.row:
             rate, force = self._screen.ahead(self._trend(), to_seconds(stamp - self._inertial))
         self._propagate(stamp, rate, force)
+        if stamp - self._inertial > SETTLED:  # the unit is silent
+            self._bound_speed()
 
     def odometry(self) -> Odometry:
         """The estimate at the body origin, at the present time."""
@@ -208,6 +205,8 @@ class Estimator:
         """Take the unit to be as noisy as a sample says, until the next one."""
         if excess != self._excess:
             _, rate, force = self._excess = excess
+            if any((*rate, *force)):  # samples before these may have been as noisy
+                self._unusual = self.time or 0
             self.state.excess[:] = *rate, *force
             self._screen = self._imu.screen(max(rate), max(force))
 
