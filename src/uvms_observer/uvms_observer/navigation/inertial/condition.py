@@ -37,7 +37,7 @@ RATE_FLOOR_RAD_S, FORCE_FLOOR_M_S2 = 1e-3, 0.02
 QUIET, SEEN = 0.3, 30
 """So many |d| above this share of the median of a unit's noise show that it has noise at all: one
 that is computed without, in a simulation or a test, may well read the same."""
-ROUGH = 3.0
+ROUGH = 6.0
 """Times the noise of the vehicle file from which on it is noisier than that."""
 STEP = 1.1
 """Factor by which the median goes up or down with each sample."""

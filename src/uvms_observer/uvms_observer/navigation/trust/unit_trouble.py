@@ -8,7 +8,7 @@ from uvms_core.vehicle import Vehicle
 from uvms_observer.navigation.inertial.condition import FORCE_FLOOR_M_S2, RATE_FLOOR_RAD_S
 from uvms_observer.navigation.state import ACCELEROMETER_BIAS, GYRO_BIAS, NavigationState
 
-NOISY = 3.0
+NOISY = 5.0
 """Times the white noise of the vehicle file."""
 BIASED = 10.0
 """Times the bias of the vehicle file."""
