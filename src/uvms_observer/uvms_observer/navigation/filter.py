@@ -142,19 +142,33 @@ class NavigationFilter:
         readings = self._instruments.readings(groups)
         for samples in groups.values():
             checks.trust_good(samples)
+        oldest, has_begun = self._oldest, self._estimator.time is not None
         for reading in readings:
-            try:
-                self._check_stamp(reading, stamp, newest)
-                self._check_start(reading)
-                reading = self._of_unit_length(reading)
-                checks.check(reading.name, reading.sample)
-            except SignalError as fault:
-                faults.append(fault)
-            else:
-                newest[reading.name] = reading.stamp
-                good.append(reading)
+            at, _, name, sample = reading
+            is_due = max(newest.get(name, -1) + 1, oldest) <= at <= stamp
+            if not (is_due and has_begun and checks.is_trusted(sample)):  # else it is good
+                try:
+                    reading = self._checked(reading, stamp, newest)
+                except SignalError as fault:
+                    faults.append(fault)
+                    continue
+            newest[name] = at
+            good.append(reading)
         self.rejected += len(faults)
         return good, faults
+
+    def _checked(self, reading: Reading, stamp: int, newest: dict[str, int]) -> Reading:
+        """A reading that is good, its quaternion of unit length; else SignalError."""
+        self._check_stamp(reading, stamp, newest)
+        self._check_start(reading)
+        reading = self._of_unit_length(reading)
+        checks.check(reading.name, reading.sample)
+        return reading
+
+    @property
+    def _oldest(self) -> int:
+        """Stamp of the oldest sample that can be used, ns."""
+        return self._stamp - self._latency
 
     def _check_start(self, reading: Reading) -> None:
         """An inertial unit that starts must feel gravity the right way round."""
@@ -239,7 +253,7 @@ class NavigationFilter:
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
-        last, oldest = newest.get(reading.name, -1), self._stamp - self._latency
+        last, oldest = newest.get(reading.name, -1), self._oldest
         if max(last + 1, oldest) <= reading.stamp <= stamp:
             return
         what = f"{reading.name}.stamp is {reading.stamp} ns; it must"
