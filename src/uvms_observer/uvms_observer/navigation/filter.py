@@ -1,7 +1,7 @@
 """The navigation filter, eq. (20): gyrocompass and IMU, DVL, pressure, GPS ... to Odometry."""
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -152,20 +152,45 @@ class NavigationFilter:
         readings = self._instruments.readings(groups)
         for samples in groups.values():
             checks.trust_good(samples)
+        oldest, has_begun = self._oldest, self._estimator.time is not None
+        plain = self._plain(groups.get(INERTIAL.name, ()), newest, stamp) if has_begun else ()
         for reading in readings:
+            at, _, name, sample = reading
+            is_due = max(newest.get(name, -1) + 1, oldest) <= at <= stamp
             try:
-                self._check_stamp(reading, stamp, newest)
-                self._check_start(reading)
-                reading = self._of_unit_length(reading)
-                checks.check(reading.name, reading.sample)
-                reading = self._of_a_vehicle(reading)
+                if not (is_due and has_begun and checks.is_trusted(sample)):  # else it is good
+                    reading = self._checked(reading, stamp, newest)
+                if not (name == INERTIAL.name and at in plain):
+                    reading = self._of_a_vehicle(reading)
             except SignalError as fault:
                 faults.append(fault)
-            else:
-                newest[reading.name] = reading.stamp
-                good.append(reading)
+                continue
+            newest[name] = at
+            good.append(reading)
         self.rejected += len(faults)
         return good, faults
+
+    def _plain(
+        self, samples: Sequence[ImuSample], newest: Mapping[str, int], stamp: int
+    ) -> Container[int]:
+        """Stamps of the unit's samples in which there is nothing to be judged one by one."""
+        if not samples or not all(map(checks.is_trusted, samples)):
+            return ()
+        begin = max(newest.get(INERTIAL.name, -1) + 1, self._oldest)
+        return self._condition.plain(samples, begin, stamp)
+
+    def _checked(self, reading: Reading, stamp: int, newest: dict[str, int]) -> Reading:
+        """A reading that is good, its quaternion of unit length; else SignalError."""
+        self._check_stamp(reading, stamp, newest)
+        self._check_start(reading)
+        reading = self._of_unit_length(reading)
+        checks.check(reading.name, reading.sample)
+        return reading
+
+    @property
+    def _oldest(self) -> int:
+        """Stamp of the oldest sample that can be used, ns."""
+        return self._stamp - self._latency
 
     def _check_start(self, reading: Reading) -> None:
         """An inertial unit that starts must feel gravity the right way round."""
@@ -259,7 +284,7 @@ class NavigationFilter:
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
-        last, oldest = newest.get(reading.name, -1), self._stamp - self._latency
+        last, oldest = newest.get(reading.name, -1), self._oldest
         if max(last + 1, oldest) <= reading.stamp <= stamp:
             return
         what = f"{reading.name}.stamp is {reading.stamp} ns; it must"

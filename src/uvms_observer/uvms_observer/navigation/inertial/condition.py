@@ -11,6 +11,7 @@
   the vehicle file says, it is stated as if the message had.
 """
 
+from collections.abc import Sequence
 from dataclasses import replace
 from math import ceil, sqrt
 from typing import NamedTuple
@@ -21,6 +22,7 @@ from uvms_core.errors import SignalError
 from uvms_core.signals import Array, ImuSample, to_nanoseconds
 from uvms_core.vehicle import Vehicle
 from uvms_dynamics.kernels.jit import exact_kernel
+from uvms_observer.navigation.inertial.at_once import packed
 from uvms_observer.navigation.inertial.installation import known_variance
 from uvms_observer.navigation.measurements.noise import most_alike
 
@@ -99,6 +101,25 @@ class ConditionCheck:
     def back_to(self, before: Condition) -> None:
         """Forget what has come since then."""
         self._now = before
+
+    def plain(self, samples: Sequence[ImuSample], begin: int, end: int) -> tuple[int, ...]:
+        """Stamps of the samples if each may be used as it is: the usual case, in one call.
+
+        Else nothing is taken in, and `judged` has to say of each what is to be made of it.
+
+        Args:
+            samples: checked.
+            begin, end: ns, between which their stamps must be, one after the other.
+        """
+        stamps, rows = packed(samples)
+        before = self.copied()
+        if are_plain(
+            *self._now, self._usual, self._quiet, stamps, rows, self._period, self._alike,
+            *(self._least, self._most, begin, end),
+        ):  # fmt: skip
+            return tuple(sample.stamp for sample in samples)
+        self.back_to(before)
+        return ()
 
     def judged(self, name: str, sample: ImuSample) -> ImuSample:
         """A sample as it may be used: with its noise, without an attitude that is none.
@@ -225,3 +246,50 @@ def follow(
         most = max(most, values[2, i] / usual[i])
     times[1], times[0] = times[0], stamp
     return most
+
+
+@exact_kernel
+def are_plain(
+    values: Array,
+    seen: Array,
+    attitude: Array,
+    same: Array,
+    times: Array,
+    usual: Array,
+    quiet: Array,
+    stamps: Array,
+    rows: Array,
+    period: float,
+    alike: Array,
+    least: float,
+    most: float,
+    begin: int,
+    end: int,
+) -> bool:
+    """Take samples into a `Condition` up to the first of which there is something to say.
+
+    Args:
+        values, seen, attitude, same, times, usual, quiet, period: as of `follow`.
+        stamps, rows: as of `packed`.
+        alike: (3,) samples in a row that may be the same: attitude, rate, force.
+        least, most: m/s^2, of the size of the force.
+        begin, end: ns, of the stamps.
+
+    Returns:
+        Whether there is none.
+    """
+    for k in range(len(stamps)):
+        if not begin <= stamps[k] <= end:
+            return False
+        begin = stamps[k] + 1
+        quaternion, rate, force = rows[k, :4], rows[k, 4:7], rows[k, 7:]
+        size = sqrt(force[0] ** 2 + force[1] ** 2 + force[2] ** 2)
+        if not least <= size <= most or np.abs(rate).max() > RATE_RAD_S:
+            return False
+        condition = values, seen, attitude, same, times
+        if follow(*condition, usual, quiet, stamps[k], quaternion, rate, force, period) > ROUGH:
+            return False
+        for part in range(3):
+            if seen[max(part - 1, 0)] > SEEN and same[part] > alike[part]:
+                return False
+    return True

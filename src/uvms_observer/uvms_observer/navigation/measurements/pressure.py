@@ -6,6 +6,7 @@ from uvms_core.signals import Array, PressureSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Pressure
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.products import product
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
@@ -60,7 +61,7 @@ class PressureDepth(Measurement):
 @exact_inner
 def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Depth that the pressure should show (1,) m, and H."""
-    offset = quat_to_matrix(state.quaternion) @ lever
+    offset = product(quat_to_matrix(state.quaternion), lever)
     H = np.zeros((1, SIZE))
     H[0, 2] = 1.0
     H[0, 6] = offset[1]
