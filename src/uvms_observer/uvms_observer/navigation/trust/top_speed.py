@@ -76,6 +76,8 @@ def is_impossible(state: NavigationState, std: float) -> bool:
     Args:
         std: of its velocity along an axis, m/s.
     """
+    if max(map(abs, state.velocity.tolist())) <= IMPOSSIBLE * std:  # the usual case, at once
+        return False
     variance = np.diag(state.covariance)[VELOCITY]
     beyond = np.abs(state.velocity) - SURE * np.sqrt(np.maximum(variance, 0.0))
     return bool((beyond > IMPOSSIBLE * std).any())
