@@ -6,10 +6,11 @@ The tests judge it, and `benchmarks/navigation_table.py` prints it.
 from dataclasses import dataclass, field, replace
 
 import numpy as np
+from hull_truth import TICK
 from scipy.spatial.transform import Rotation
 from sensor_truth import Motion, Rig, Waves
 
-from uvms_core.signals import to_seconds
+from uvms_core.signals import to_nanoseconds, to_seconds
 from uvms_core.vehicle import load_vehicle
 from uvms_observer import NavigationConfig, NavigationFilter
 from uvms_observer.navigation.trust.sensor_health import Health
@@ -145,8 +146,11 @@ class Outcome:
     navigation: NavigationFilter
 
 
-def outcome_of(fault, seed=1, vehicle=VEHICLE, motion=None):
-    """A run of a minute; on another motion than the fault's where one is given."""
+def outcome_of(fault, seed=1, vehicle=VEHICLE, motion=None, thrusts=None):
+    """A run of a minute; on another motion than the fault's where one is given.
+
+    thrusts: as of `hull_truth`, of the same motion; None: nobody tells them.
+    """
     motion = motion or fault.motion
     rig = Rig(vehicle, motion, seed)
     start = tuple(map(float, motion.position(0.0)))
@@ -155,6 +159,8 @@ def outcome_of(fault, seed=1, vehicle=VEHICLE, motion=None):
     for stamp, *samples in rig.frames(END):
         groups = dict(zip(("imu", "dvl", "pressure", "gps"), samples, strict=True))
         groups[fault.sensor] = list(fault.spoil(groups[fault.sensor]))
+        if thrusts is not None and stamp:
+            navigation.inform(thrusts.allocation(stamp - to_nanoseconds(TICK)))
         odometry, _ = navigation.step_screened(stamp, groups)
         error = motion.position(to_seconds(stamp)) - odometry.position
         errors.append(np.linalg.norm(error))

@@ -3,15 +3,18 @@
 from collections import Counter
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from heapq import merge
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
 
 from uvms_analysis.log.definition import UNDECODABLE
+from uvms_analysis.log.read import RunLog
 from uvms_bringup.navigate.arrivals import Arrivals
 from uvms_bringup.navigate.bag import Bag, Raw
 from uvms_bringup.navigate.clocks import check_one_clock, check_one_way
 from uvms_bringup.navigate.topic_map import TopicMap
+from uvms_core import topics
 from uvms_core.checks import check
 from uvms_core.errors import SignalError
 from uvms_core.messages import from_message
@@ -68,6 +71,7 @@ class Feed:
                     self._of_world.add(name)
         arrivals = Arrivals(bag.run) if bag.run is not None and bag.is_ours else None
         self._raw = self._in_order(list(bag.messages(list(self._topics))), arrivals, period)
+        self._thrusts = _thrusts(bag.run) if bag.run is not None and bag.is_ours else []
 
     def _in_order(
         self, messages: list[Raw], arrivals: Arrivals | None, period: int
@@ -116,7 +120,10 @@ class Feed:
         return (self._raw[0][0], self._raw[-1][0]) if self._raw else (0, 0)
 
     def samples(self) -> Iterator[Sample]:
-        """All that are valid, in order."""
+        """All that are valid, in order, and the thrusts of a run of ours."""
+        return merge(self._measured(), self._thrusts, key=lambda each: each.arrival)
+
+    def _measured(self) -> Iterator[Sample]:
         for arrival, stamp, one in self._raw:
             topic = self._topics[one.topic]
             try:
@@ -134,6 +141,13 @@ class Feed:
     def _refuse(self, topic: str, why: str) -> None:
         self.unreadable[topic] += 1
         self.first_fault.setdefault(topic, why)
+
+
+def _thrusts(run: RunLog) -> list[Sample]:
+    """What the allocator commanded in a run; another system's commands are not known."""
+    if not run.has(topics.ALLOCATION):
+        return []
+    return [Sample(each.stamp, topics.ALLOCATION, each) for each in run.signals(topics.ALLOCATION)]
 
 
 def _framed(topic: Topic, message: Any) -> Topic:

@@ -245,7 +245,7 @@ def _nodes(kinds: Iterable[Sampled], battery: bool = True) -> dict[str, NodeTopi
             (THRUSTER_COMMAND, JOINT_COMMAND),
             (CLOCK, *measured, JOINT_STATES, *_battery(battery), *truth),
         ),
-        NAVIGATION: NodeTopics((CLOCK, *fused), (ODOMETRY,)),
+        NAVIGATION: NodeTopics((CLOCK, *fused, ALLOCATION), (ODOMETRY,)),
         DISTURBANCE_OBSERVER: NodeTopics(
             (CLOCK, ODOMETRY, JOINT_STATES, WRENCH_ACHIEVED, ALLOCATION),
             (DISTURBANCE, DISTURBANCE_BUDGET),

@@ -51,7 +51,9 @@ class NavigationEstimator(Protocol):
     A method `resume(estimate: Odometry)`, where there is one, is called before the first step of a
     filter that begins in the middle of a run: it begins there, as uncertain as the estimate says.
     A method `waits_for() -> str`, where there is one, says after each step what it still waits for;
-    until it returns an empty text nothing is published.
+    until it returns an empty text nothing is published. A filter that wants the thrusts has a
+    method `inform(allocation)`, which is called before each step with the `Allocation` of the tick
+    before (None where there is none).
     """
 
     @abstractmethod

@@ -11,7 +11,7 @@ from uvms_core.part import Output, Part
 from uvms_core.plugin import create, prepared
 from uvms_core.sensors import inertial
 from uvms_core.signals import NOTHING_YET, DisturbanceBudget, Odometry, SensorGaps, Wrench
-from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
+from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Input, Previous, Same, Tick
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle
 from uvms_observer.arrivals import sensor_inputs, used_sensors
@@ -38,7 +38,7 @@ REMEMBERED = 4
 
 
 class NavigationPart(Part):
-    """Samples of all sensors in, odometry out, once a control tick.
+    """Samples of all sensors and the thrusts in, odometry out, once a control tick.
 
     Args:
         vehicle: its sensors.
@@ -54,7 +54,9 @@ class NavigationPart(Part):
         self.every = period
         self.trigger = inertial(vehicle).topic
         self._sensors = {sensor.name: sensor.topic.name for sensor in used_sensors(vehicle)}
-        self.inputs = sensor_inputs(vehicle)
+        self.inputs: dict[Topic, Input] = {**sensor_inputs(vehicle)}
+        if hasattr(self.filter, "inform"):
+            self.inputs[topics.ALLOCATION] = CompanionBefore(period)
         self._faults: Sequence[UvmsError] = ()
         self._begun = False
         self._known, self._waits_for = True, ""
@@ -76,6 +78,8 @@ class NavigationPart(Part):
         self._good = self.estimate or self._good  # it was valid, or there was a restart
         if not self._begun:
             self._begin(tick.stamp)
+        if inform := getattr(self.filter, "inform", None):
+            inform(tick[topics.ALLOCATION.name])
         odometry, self._faults = self.filter.step_screened(tick.stamp, samples)
         self._begun = True
         waits_for = getattr(self.filter, "waits_for", None)

@@ -55,7 +55,8 @@ class Estimator:
         self._compass = compass.variance if type(compass) is Gyrocompass else None
         self._measurements = measurements
         self._config = config
-        self._trust = Corrections(measurements, config.gate_probability, periods, imu.speed)
+        known = imu.speed, imu.hull
+        self._trust = Corrections(measurements, config.gate_probability, periods, *known)
         self.state: NavigationState = empty_state()
         self.time: int | None = None  # ns; None until the first IMU sample
         self.start: Odometry | None = None  # where to begin; None: as configured

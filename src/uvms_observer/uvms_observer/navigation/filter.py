@@ -12,6 +12,7 @@ from uvms_core.diagnostics import Trouble
 from uvms_core.errors import SignalError
 from uvms_core.sensors import INERTIAL
 from uvms_core.signals import (
+    Allocation,
     DvlSample,
     GpsSample,
     ImuSample,
@@ -69,6 +70,8 @@ class NavigationFilter:
             imu, self._instruments.measurements, config, self._instruments.periods
         )
         self._condition, self._unit_trouble = ConditionCheck(vehicle), UnitTrouble(vehicle)
+        self._hull = imu.hull.motion
+        self._last: Odometry | None = None
         self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
         self._latency = to_nanoseconds(config.latency_s)
         self._memory = max(self._latency, suspicion.MEMORY)
@@ -98,6 +101,10 @@ class NavigationFilter:
         """
         self._estimator.start = estimate
         self._initialised = True
+
+    def inform(self, allocation: Allocation | None) -> None:
+        """The thrusts commanded at the tick before, ahead of a step; None: not known."""
+        self._hull.inform(allocation)
 
     def step(
         self,
@@ -223,8 +230,11 @@ class NavigationFilter:
         for reading in readings:
             self._newest[reading.name] = reading.stamp
         self._stamp = stamp
+        if self._last is not None:
+            self._hull.note(stamp, self._last)
         self._run(stamp, readings)
-        return self._estimator.odometry()
+        self._last = self._estimator.odometry()
+        return self._last
 
     def waits_for(self) -> str:
         """What the filter still waits for before its estimate means anything; empty: nothing."""

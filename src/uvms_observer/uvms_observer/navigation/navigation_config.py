@@ -86,6 +86,20 @@ class NavigationConfig(PluginConfig, StartConfig):
     current_time_constant_s: float = Field(
         600.0, gt=0.0, description="correlation time of the water current, s"
     )
+    hull_model_error: float = Field(
+        0.2,
+        gt=0.0,
+        le=1.0,
+        description="share by which thrust and drag of the vehicle file may be wrong, where the"
+        " thrusts tell the velocity because no sensor does",
+    )
+    unmodelled_force: float = Field(
+        0.03,
+        gt=0.0,
+        le=1.0,
+        description="std of the force that acts on the vehicle beside thrust and drag, such as a"
+        " tether's, as a share of all that its thrusters have along the axis",
+    )
     latency_s: float = Field(
         0.25,
         ge=0.0,

@@ -13,6 +13,7 @@ from uvms_observer.navigation.measurements.noise import ByAxis, beyond
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.propagation import ProcessNoise
 from uvms_observer.navigation.state import COMPASS_BIAS, CURRENT, INERTIAL_BIASES, SIZE
+from uvms_observer.navigation.trust.hull_model import HullModel, hull_model
 from uvms_observer.navigation.trust.top_speed import speed_std
 
 FAULTY_GYRO_DEG_S = 1.0
@@ -37,6 +38,7 @@ class Installation(NamedTuple):
     period: float  # s, between two samples
     faulty_bias_variance: Array  # (6,) of a unit that something has happened to
     speed: float  # m/s, std of the vehicle's velocity over ground
+    hull: HullModel  # what the thrusts make of it
     known_variance: Stated  # of all errors of attitude, rates and forces, by axis, that
     # the vehicle file knows of
 
@@ -71,6 +73,7 @@ def installation(vehicle: Vehicle, config: NavigationConfig) -> Installation:
         ),
         known_variance=known_variance(vehicle.sensors.imu),
         speed=speed_std(vehicle, config.current_std_m_s),
+        hull=hull_model(vehicle, config),
     )
 
 

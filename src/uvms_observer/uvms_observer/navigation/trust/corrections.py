@@ -15,6 +15,7 @@ from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import NavigationState
 from uvms_observer.navigation.trust import offsets, undecided
+from uvms_observer.navigation.trust.hull_model import HullModel
 from uvms_observer.navigation.trust.innovation_gate import InnovationGate, Tally, accepted
 from uvms_observer.navigation.trust.offsets import Offsets
 from uvms_observer.navigation.trust.stuck import Repeated, is_stuck
@@ -34,6 +35,7 @@ class Corrections:
         probability: share of good samples that a gate accepts.
         periods: between two samples of each, s.
         speed: std of the vehicle's velocity over ground, m/s.
+        hull: what the thrusts make of it.
     """
 
     def __init__(
@@ -42,8 +44,9 @@ class Corrections:
         probability: float,
         periods: Mapping[str, float],
         speed: float,
+        hull: HullModel,
     ) -> None:
-        self._measurements, self._speed = measurements, speed
+        self._measurements, self._speed, self._hull = measurements, speed, hull
         self.gates = {
             name: InnovationGate(each.size, probability, periods[name])
             for name, each in measurements.items()
@@ -109,7 +112,8 @@ class Corrections:
 
     def bounded(self, state: NavigationState, time: int) -> NavigationState:
         """Where nothing tells the velocity at `time`, ns, it is that of such a vehicle."""
-        state, self._offsets = offsets.bound_speed(state, self._offsets, self._speed, time)
+        given = self._offsets, self._speed, self._hull
+        state, self._offsets = offsets.bound_speed(state, *given, time)
         return state
 
     def widened(self, state: NavigationState, time: int) -> NavigationState:

@@ -1,7 +1,8 @@
 """What is carried beside the filter's state: of a sensor that is off, or of the vehicle's speed.
 
-There is room for one of them. A sensor that is off tells more by its changes than the speed that a
-vehicle can have, so that it comes first; where it says nothing, that is what is left.
+There is room for one of them. A sensor that is off tells more by its changes than the vehicle
+itself, so that it comes first; where it says nothing, that is what is left: what the thrusts give,
+and where they are not known, or the model of the hull is wrong, the speed that it can have.
 """
 
 from typing import NamedTuple
@@ -10,7 +11,8 @@ from uvms_core.signals import Array
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import NavigationState
-from uvms_observer.navigation.trust import following, lasting, top_speed
+from uvms_observer.navigation.trust import following, hull_model, lasting, top_speed
+from uvms_observer.navigation.trust.hull_model import Driven, HullModel
 from uvms_observer.navigation.trust.lasting import Lasting
 
 
@@ -19,6 +21,8 @@ class Offsets(NamedTuple):
 
     sensor: Lasting | None = None
     speed: Lasting | None = None
+    driven: Driven | None = None
+    wrong: bool = False  # whether the model of the hull is, since the velocity was last known
     bounded: int = 0  # ns, when the speed was last looked at
 
     def of(self, name: str) -> Lasting | None:
@@ -92,14 +96,30 @@ def stop(state: NavigationState, offsets: Offsets) -> Carried:
     return following.stopped(state, offsets.sensor), offsets._replace(sensor=None)
 
 
-def bound_speed(state: NavigationState, offsets: Offsets, speed: float, time: int) -> Carried:
-    """Where no sensor tells the velocity at `time` (ns), it is that of a vehicle: its std, m/s."""
+def bound_speed(
+    state: NavigationState, offsets: Offsets, speed: float, model: HullModel, time: int
+) -> Carried:
+    """Where no sensor tells the velocity at `time` (ns), the vehicle does.
+
+    Args:
+        speed: std of its velocity over ground, m/s.
+        model: what the thrusts give, where they are known.
+    """
     kept = offsets.sensor
     if time - offsets.bounded < top_speed.EVERY or (kept is not None and kept.carried):
         return state, offsets
+    offsets = offsets._replace(bounded=time)
+    if not offsets.wrong and offsets.speed is None:
+        state, driven, wrong = hull_model.aided(state, offsets.driven, model, time)
+        offsets = offsets._replace(driven=driven, wrong=wrong)
+    if offsets.driven is not None:
+        return state, offsets
     state, now = top_speed.bounded(state, offsets.speed, speed, time)
-    return state, offsets._replace(speed=now, bounded=time)
+    known = offsets.wrong and hull_model.velocity_std(state) < hull_model.LEAST_M_S
+    return state, offsets._replace(speed=now, wrong=offsets.wrong and not known)
 
 
 def _without_speed(state: NavigationState, offsets: Offsets) -> Carried:
-    return following.stopped(state, offsets.speed), offsets._replace(speed=None)
+    if offsets.driven is not None:
+        state = lasting.without_offset(state)
+    return following.stopped(state, offsets.speed), offsets._replace(speed=None, driven=None)
