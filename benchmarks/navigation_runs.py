@@ -13,6 +13,7 @@ from uvms_observer import NavigationConfig, NavigationFilter
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "tests" / "uvms_observer"))
 
+from hull_truth import Thrusts
 from navigation_cases import CRUISE, FAULTS, outcome_of
 from sensor_truth import Motion, Rig, Waves
 
@@ -93,14 +94,27 @@ class Row(NamedTuple):
     jump: float  # sigma, greatest from one tick to the next
 
 
-def fault_rows(vehicle: Vehicle, seeds: int, motions: tuple[str | None, ...]) -> Iterator[Row]:
-    """The table of faults; a motion of None is the one that the fault has in the tests."""
+def fault_rows(
+    vehicle: Vehicle,
+    seeds: int,
+    motions: tuple[str | None, ...],
+    only: str = "",
+    thrusts: bool = False,
+) -> Iterator[Row]:
+    """The table of faults; a motion of None is the one that the fault has in the tests.
+
+    Args:
+        only: what the names of the faults begin with.
+        thrusts: whether the filter is told them, by a hull that is unlike its own (`hull_truth`).
+    """
     for name, fault in FAULTS.items():
-        outcomes = [
-            outcome_of(fault, 1 + seed, vehicle, MOTIONS[motion] if motion else None)
-            for seed in range(seeds)
-            for motion in motions
-        ]
+        if not name.startswith(only):
+            continue
+        outcomes = []
+        for seed in range(1, 1 + seeds):
+            for motion in (MOTIONS[each] if each else fault.motion for each in motions):
+                told = Thrusts(vehicle, motion, seed) if thrusts else None
+                outcomes.append(outcome_of(fault, seed, vehicle, motion, told))
         yield Row(
             name,
             max(float(each.errors.max()) for each in outcomes),

@@ -188,8 +188,8 @@ def _add_excess(P: Array, R: Array, excess: Array, dt: float, period: float) -> 
         for j in range(3):
             gyro, accelerometer = 0.0, 0.0
             for k in range(3):
-                gyro += R[i, k] * excess[k] * R[j, k] * period
-                accelerometer += R[i, k] * excess[3 + k] * R[j, k] * period
+                gyro += R[i, k] * R[j, k] * (excess[k] * period)
+                accelerometer += R[i, k] * R[j, k] * (excess[3 + k] * period)
             P[i, j] += accelerometer * dt**3 / 3.0
             P[i, 3 + j] += 0.5 * accelerometer * dt**2
             P[3 + i, j] += 0.5 * accelerometer * dt**2

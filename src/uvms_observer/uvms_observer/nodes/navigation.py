@@ -30,7 +30,7 @@ class CheckpointConfig(Config):
 
 
 class NavigationNode(PartNode):
-    """sensors/* in, odometry out, once a control tick; the truth in, where that is the source."""
+    """sensors/* and allocation in, odometry out, once a tick; or the truth in, if so configured."""
 
     role = topics.NAVIGATION
     configurations = (NavigationConfig, CheckpointConfig)

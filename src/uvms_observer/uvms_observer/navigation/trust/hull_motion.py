@@ -26,6 +26,8 @@ SETTLED = to_nanoseconds(10.0)
 """How long the thrusts must have been known before the model counts, ns."""
 HOLDS = to_nanoseconds(0.2)
 """For how long a thrust stands in for those that are missing, ns: as control itself goes on."""
+BROKEN = 0.5
+"""Share of its command below which a thruster is not known any more, nor what the hull does."""
 LONGEST = 0.05
 """Of a step of the integration, s."""
 
@@ -84,8 +86,9 @@ class HullMotion:
     def _thrust(self, begin: int) -> Array | None:
         told, self._told = self._told, None
         if told is not None and len(told.thrust) == self._matrix.shape[1]:
-            whole = not len(told.effectiveness) or bool((told.effectiveness == 1.0).all())
-            self._held = (told.stamp, told.thrust) if whole else None
+            share = told.effectiveness if len(told.effectiveness) else np.ones(len(told.thrust))
+            works = bool((share >= BROKEN).all())
+            self._held = (told.stamp, share * told.thrust) if works else None
         held = self._held
         return held[1] if held is not None and 0 <= begin - held[0] <= HOLDS else None
 
