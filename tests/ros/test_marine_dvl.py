@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from graph import column, finished, own_domain, uvms_here
+from graph import column, finished, own_domain, uvms, uvms_here
 
 from uvms_core import topics
 from uvms_core.vehicle import dump_vehicle, load_vehicle
@@ -55,7 +55,7 @@ def sourced(tmp_path, monkeypatch):
 
 def test_a_graph_with_the_message_is_that_with_a_twist(sourced, tmp_path):
     """Published, read and recorded by our nodes in the message that a driver would use."""
-    marine = finished(uvms_here(tmp_path / "marine", "run", *RUN, "--composed", "--set", MESSAGE))
+    marine = finished(uvms(tmp_path / "marine", "run", *RUN, "--composed", "--set", MESSAGE))
     twist = finished(uvms_here(tmp_path / "twist", "simulate", *RUN))
     assert marine.log.topics["/sensors/dvl"] == MARINE
     assert twist.log.topics["/sensors/dvl"] != MARINE
