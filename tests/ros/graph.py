@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rclpy
 
 from uvms_analysis.log.read import RunLog
 from uvms_bringup.cli import main
@@ -102,6 +103,7 @@ def uvms_here(folder: Path, *arguments: str) -> Outcome:
             code = main([*arguments, "--output", str(folder)])
             texts = [file.seek(0) or file.read() for file in (out, err)]
     finally:  # what a run changes for the whole of its process
+        rclpy.try_shutdown()
         signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
         os.environ.clear()
         os.environ.update(variables)
