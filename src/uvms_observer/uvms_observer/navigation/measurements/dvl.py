@@ -255,6 +255,9 @@ def keep_reading(state: NavigationState, before: Array) -> None:
     for j in range(SIZE):
         for i in range(3):
             P[j, 3 + i] -= changed[i, j]
+    for i in range(3):
+        for j in range(i):  # rounded in another order
+            P[3 + j, 3 + i] = P[3 + i, 3 + j]
     for j in range(state.cross.shape[0]):
         for i in range(3):
             state.cross[j, 3 + i] -= _mixed(T, state.cross[j], i)
