@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 
 from uvms_core.plausibility.agility import agility_of
-from uvms_core.signals import Array, to_nanoseconds, to_seconds
+from uvms_core.signals import Allocation, Array, Odometry, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.resistance import axis_resistance
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
@@ -77,6 +77,7 @@ class HullModel(NamedTuple):
 def hull_model(vehicle: Vehicle, config: NavigationConfig) -> HullModel:
     """The model of this vehicle, as uncertain as the configuration says."""
     linear, quadratic = axis_resistance(vehicle.hull, vehicle.environment.water_density_kg_m3)
+    _try(HullMotion(vehicle), len(vehicle.thrusters))
     return HullModel(
         HullMotion(vehicle),
         np.sqrt(2.0) * config.hull_model_error,  # of thrust and of drag
@@ -86,6 +87,15 @@ def hull_model(vehicle: Vehicle, config: NavigationConfig) -> HullModel:
         np.array(vehicle.sensors.imu.position_m),
         config.current_std_m_s,
     )
+
+
+def _try(motion: HullMotion, thrusters: int) -> None:
+    """Have the kernel compiled before the first loss, in the midst of which nobody can wait."""
+    none = np.zeros(6)
+    wide = np.zeros((6, 6))
+    motion.inform(Allocation(0, np.zeros(thrusters), none, none, np.zeros(thrusters, bool)))
+    motion.note(EVERY, Odometry(0, np.zeros(3), lasting.NO_TURN, none, wide, wide))
+    motion.at(EVERY)
 
 
 class Driven(NamedTuple):
