@@ -40,8 +40,8 @@ docs: setup ## set up, then build the documentation as a static site in site/ (o
 	@NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --config-file tools/site/mkdocs.yml
 	@echo "The documentation is in site/index.html"
 
-pictures: setup ## set up, then make the viewer's pictures and movie in docs/figures again
-	@$(BIN)/python tools/pictures
+pictures: setup ## set up, then make the viewer's pictures, its movie and what the tour prints again (that alone: ARGS=tour)
+	@$(BIN)/python tools/pictures $(ARGS)
 
 figures: setup ## set up, then make the paper's figures and docs/paper-figures.md from runs of ours again
 	@$(BIN)/python -m uvms_bringup.paper_figures $(ARGS)

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 HERE = Path(__file__).parent
-ALONE = ("faults", "integration", "ros")
+ALONE = ("faults", "ros")
 """Folders with graphs and clocks: one of their tests at a time."""
 BUILDS = ("ros/test_colcon.py",)
 """Files in them that only build and install: these go beside the graphs."""

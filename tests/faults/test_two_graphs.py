@@ -9,11 +9,13 @@ import pytest
 from live import children, gone, no_domain, one_domain, running
 
 HOVER = ("run", "hover", "--composed", "--duration")
+UNHURRIED = ("600", "--pace", "realtime")
+"""A run that is only there, and leaves the processor to the other one."""
 
 
 def test_a_second_run_on_a_domain_is_refused_and_names_the_first(tmp_path, saw):
     domain = one_domain()
-    with running(tmp_path / "a", *HOVER, "600", **domain) as first:
+    with running(tmp_path / "a", *HOVER, *UNHURRIED, **domain) as first:
         first.await_ticks()
         with running(tmp_path / "b", *HOVER, "5", **domain) as second:
             assert second.code() == 2
@@ -38,7 +40,7 @@ def test_a_graph_that_knows_nothing_of_locks_is_seen_before_the_start(tmp_path, 
     domain = one_domain()
     other = tmp_path / "elsewhere"  # as on another machine
     other.mkdir()
-    with running(tmp_path / "a", *HOVER, "600", **domain) as first:
+    with running(tmp_path / "a", *HOVER, *UNHURRIED, **domain) as first:
         first.await_ticks()
         with running(tmp_path / "b", *HOVER, "5", TMPDIR=str(other), **domain) as second:
             assert second.code() == 2

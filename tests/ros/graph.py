@@ -1,9 +1,11 @@
 """Runs of the real graph for the tests: own process, own ROS domain, loopback only."""
 
+import contextlib
 import fcntl
 import itertools
 import json
 import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -14,8 +16,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+import rclpy
 
 from uvms_analysis.log.read import RunLog
+from uvms_bringup.cli import main
 from uvms_core.topics import Topic
 
 ENOUGH = 20
@@ -78,6 +82,32 @@ def uvms(folder: Path, *arguments: str, timeout: float = 300.0) -> Outcome:
         command, capture_output=True, text=True, timeout=timeout, env=own_domain(), check=False
     )
     return Outcome(done.returncode, done.stdout, done.stderr, folder)
+
+
+def uvms_here(folder: Path, *arguments: str) -> Outcome:
+    """The same in this process: with all imports and kernels at hand, where no test needs its own.
+
+    The nodes of a `run` must be in this process, too.
+    """
+    assert arguments[0] != "run" or "--composed" in arguments, arguments
+    variables = dict(os.environ)
+    blocked = signal.pthread_sigmask(signal.SIG_BLOCK, ())
+    try:
+        os.environ.update(own_domain())
+        with (
+            tempfile.TemporaryFile("w+", encoding="utf-8") as out,  # ROS wants a file's number
+            tempfile.TemporaryFile("w+", encoding="utf-8") as err,
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+        ):
+            code = main([*arguments, "--output", str(folder)])
+            texts = [file.seek(0) or file.read() for file in (out, err)]
+    finally:  # what a run changes for the whole of its process
+        rclpy.try_shutdown()
+        signal.pthread_sigmask(signal.SIG_SETMASK, blocked)
+        os.environ.clear()
+        os.environ.update(variables)
+    return Outcome(code, *texts, folder)
 
 
 def finished(outcome: Outcome) -> Outcome:

@@ -2,12 +2,11 @@
 
 import numpy as np
 import pytest
-from graph import Outcome, column, finished, uvms
+from graph import Outcome, column, finished, uvms_here
 
 from uvms_core import topics
 
-DURATION = "4"
-BASELINES = ("--set", "navigation.source=truth", "--set", "observer=none")
+OPTIONS = ("--duration", "4", "--set", "navigation.source=truth", "--set", "observer=none")
 SAME = (
     (topics.TRUE_ODOMETRY, "position"),
     (topics.TRUE_ODOMETRY, "nu"),
@@ -20,11 +19,11 @@ SAME = (
 @pytest.fixture(scope="module")
 def graph(tmp_path_factory) -> Outcome:
     folder = tmp_path_factory.mktemp("graph")
-    return finished(uvms(folder, "run", "hover", "--duration", DURATION, *BASELINES))
+    return finished(uvms_here(folder, "run", "hover", *OPTIONS, "--composed"))
 
 
 def test_the_graph_equals_the_simulation(graph, tmp_path):
-    alone = finished(uvms(tmp_path, "simulate", "hover", "--duration", DURATION, *BASELINES))
+    alone = finished(uvms_here(tmp_path, "simulate", "hover", *OPTIONS))
     for topic, name in SAME:
         ours, theirs = column(graph.log, topic, name), column(alone.log, topic, name)
         np.testing.assert_allclose(ours, theirs, rtol=0, atol=1e-9, err_msg=topic.name)
@@ -43,5 +42,5 @@ def test_the_estimate_is_the_truth_of_the_same_tick(graph):
 
 def test_the_truth_is_replayed_into_navigation(graph, tmp_path):
     log = str(graph.folder / "run.mcap")
-    again = finished(uvms(tmp_path, "replay", log, "--into", "navigation"))
+    again = finished(uvms_here(tmp_path, "replay", log, "--into", "navigation"))
     assert " 0 unanswered" in again.out

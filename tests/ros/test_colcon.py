@@ -21,6 +21,8 @@ NODES = [
     ("uvms_control", "controller"),
     ("uvms_control", "thrust_allocator"),
 ]
+SOME = ("--pytest-args", "-k", "topics")
+"""Whoever tests all runs the tests themselves, too."""
 
 pytestmark = pytest.mark.slow
 
@@ -128,11 +130,12 @@ def test_configuration_is_shared(workspace):
 
 
 def test_colcon_test_runs_the_tests_of_a_package(workspace):
-    """Every package points to its tests in the same way (tests/architecture); one is run here."""
+    """Every package points to its tests in the same way (tests/architecture); some of one run."""
     place = workspace.parent
-    colcon(place, "test", "--merge-install", "--packages-select", "uvms_core")
+    some = ("--packages-select", "uvms_core", *SOME)
+    colcon(place, "test", "--merge-install", *some)
     tests, *faults = results(place)
-    assert tests > 100
+    assert tests > 5
     assert faults == [0, 0, 0]
 
 
@@ -140,7 +143,7 @@ def test_colcon_test_needs_no_merged_workspace(tmp_path):
     """A folder for each package: it sees only what it depends on."""
     core = [ROOT / "src/uvms_core"]
     colcon(tmp_path, "build", packages=core)
-    colcon(tmp_path, "test", "--pytest-args", "-k", "topics", packages=core)
+    colcon(tmp_path, "test", *SOME, packages=core)
     tests, *faults = results(tmp_path)
     assert tests > 5
     assert faults == [0, 0, 0]

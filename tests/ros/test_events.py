@@ -5,7 +5,7 @@ from functools import partial
 
 import numpy as np
 import pytest
-from graph import Outcome, finished, uvms
+from graph import Outcome, finished, uvms_here
 from in_process import Peer, graph_of, parameters, spin_until
 from rclpy.node import Node
 from std_srvs.srv import Trigger
@@ -49,8 +49,8 @@ def runs(tmp_path_factory) -> tuple[Outcome, Outcome]:
     folder = tmp_path_factory.mktemp("events")
     (folder / "everything.yaml").write_text(SCENARIO)
     name = str(folder / "everything.yaml")
-    graph = finished(uvms(folder / "graph", "run", name, "--composed"))
-    return graph, finished(uvms(folder / "alone", "simulate", name))
+    graph = finished(uvms_here(folder / "graph", "run", name, "--composed"))
+    return graph, finished(uvms_here(folder / "alone", "simulate", name))
 
 
 def test_the_graph_in_lockstep_equals_the_simulation(runs):
@@ -83,7 +83,7 @@ def test_the_summary_tells_what_was_drawn_and_what_happened(runs):
 
 def test_navigation_replays_a_log_with_silent_and_late_sensors(runs, tmp_path):
     replayed = finished(
-        uvms(tmp_path, "replay", str(runs[0].folder / "run.mcap"), "--into", "navigation")
+        uvms_here(tmp_path, "replay", str(runs[0].folder / "run.mcap"), "--into", "navigation")
     )
     log = RunLog.open(replayed.folder / "replay.mcap")
     (difference,) = compare(runs[0].log, log, [topics.ODOMETRY])

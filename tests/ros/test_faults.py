@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from graph import uvms
+from graph import uvms_here
 from in_process import Peer, graph_of, parameters, spin_until
 
 from uvms_control.nodes.thrust_allocator import ThrustAllocatorNode
@@ -22,7 +22,7 @@ plant:
   initial_joints_deg: [0.0, 30.0, 60.0, 0.0]
 goal:
   path:
-    phases: [{duration_s: 2.0, to_m: [5.0, 0.0, 0.0]}]
+    phases: [{duration_s: 0.2, to_m: [0.5, 0.0, 0.0]}]
 """
 
 
@@ -90,11 +90,11 @@ def test_a_node_that_gets_rubbish_reports_it_and_goes_on():
 def test_a_path_that_cannot_be_followed_is_rejected_with_its_reason(tmp_path):
     scenario = tmp_path / "too_fast.yaml"
     scenario.write_text(TOO_FAST)
-    outcome = uvms(tmp_path / "run", "run", str(scenario), "--composed")
+    outcome = uvms_here(tmp_path / "run", "run", str(scenario), "--composed")
     assert outcome.code == 2
     assert "error: the planner rejected the goal: path too fast: " in outcome.err
     assert "times slower it can be followed" in outcome.err
-    simulated = uvms(tmp_path / "simulated", "simulate", str(scenario))
+    simulated = uvms_here(tmp_path / "simulated", "simulate", str(scenario))
     assert simulated.code == 2
     assert "path too fast" in simulated.err
 

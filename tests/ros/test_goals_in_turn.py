@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 import yaml
-from graph import column, finished, uvms
+from graph import column, finished, uvms_here
 
 from uvms_core import topics
 
@@ -39,8 +39,8 @@ def test_the_graph_equals_the_simulation(tmp_path, further):
     """A path takes its time to be planned; in simulated time none passes, nor before the first."""
     file = tmp_path / "in_turn.yaml"
     file.write_text(yaml.safe_dump(SCENARIO | further), encoding="utf-8")
-    graph = finished(uvms(tmp_path / "graph", "run", str(file), "--composed"))
-    alone = finished(uvms(tmp_path / "alone", "simulate", str(file)))
+    graph = finished(uvms_here(tmp_path / "graph", "run", str(file), "--composed"))
+    alone = finished(uvms_here(tmp_path / "alone", "simulate", str(file)))
     goals = len((SCENARIO | further)["goals"])
     for outcome in (graph, alone):
         summary = outcome.summary

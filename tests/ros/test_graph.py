@@ -2,7 +2,7 @@
 
 import numpy as np
 import pytest
-from graph import Outcome, column, finished, uvms
+from graph import Outcome, column, finished, uvms, uvms_here
 
 from uvms_analysis.log.compare import compare
 from uvms_core import topics
@@ -36,7 +36,9 @@ def composed(tmp_path_factory) -> Outcome:
 @pytest.fixture(scope="module")
 def simulated(tmp_path_factory) -> Outcome:
     folder = tmp_path_factory.mktemp("simulated")
-    return finished(uvms(folder, "simulate", "manipulation", "--duration", DURATION, "--seed", "7"))
+    return finished(
+        uvms_here(folder, "simulate", "manipulation", "--duration", DURATION, "--seed", "7")
+    )
 
 
 @pytest.mark.parametrize("pair", ["separate", "composed"])
@@ -84,7 +86,7 @@ def test_the_log_tells_where_it_comes_from(separate):
 
 def test_another_seed_is_another_run(simulated, tmp_path):
     other = finished(
-        uvms(tmp_path, "simulate", "manipulation", "--duration", DURATION, "--seed", "8")
+        uvms_here(tmp_path, "simulate", "manipulation", "--duration", DURATION, "--seed", "8")
     )
     ours = column(simulated.log, topics.IMU, "angular_velocity")
     assert np.abs(ours - column(other.log, topics.IMU, "angular_velocity")).max() > 1e-6

@@ -2,7 +2,7 @@
 
 import pytest
 import yaml
-from graph import finished, uvms
+from graph import finished, uvms, uvms_here
 
 from uvms_analysis.log.compare import compare
 from uvms_analysis.log.read import RunLog
@@ -25,7 +25,7 @@ SCENARIO = {
 def test_the_run_goes_on_until_there_is_a_fix_and_then_does_its_goals(tmp_path):
     file = tmp_path / "late_fix.yaml"
     file.write_text(yaml.safe_dump(SCENARIO), encoding="utf-8")
-    outcome = finished(uvms(tmp_path, "run", str(file), "--composed"))
+    outcome = finished(uvms_here(tmp_path, "run", str(file), "--composed"))
     summary = outcome.summary
     assert (summary["outcome"], summary["lockstep_timeouts"]) == ("completed", 0), summary
     assert [goal["state"] for goal in summary["goals"]] == ["succeeded", "succeeded"]
@@ -39,7 +39,7 @@ def simulated(tmp_path_factory):
     folder = tmp_path_factory.mktemp("late")
     file = folder / "late_fix.yaml"
     file.write_text(yaml.safe_dump(SCENARIO), encoding="utf-8")
-    return finished(uvms(folder / "run", "simulate", str(file)))
+    return finished(uvms_here(folder / "run", "simulate", str(file)))
 
 
 @pytest.mark.parametrize(
@@ -49,7 +49,7 @@ def simulated(tmp_path_factory):
 def test_a_node_answers_in_a_replay_as_it_did(simulated, tmp_path, node, topic):
     """Nobody waits for an odometry that there was not; both goals begin where they began."""
     log = str(simulated.folder / "run.mcap")
-    outcome = finished(uvms(tmp_path, "replay", log, "--into", node))
+    outcome = finished(uvms_here(tmp_path, "replay", log, "--into", node))
     assert "0 unanswered" in outcome.out
     again = RunLog.open(tmp_path / "replay.mcap")
     (difference,) = compare(simulated.log, again, [topic])

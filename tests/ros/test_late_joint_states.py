@@ -1,7 +1,7 @@
 """Joint states that come late, on the real graph: as in the process, and nothing waits for them."""
 
 import pytest
-from graph import Outcome, finished, uvms
+from graph import Outcome, finished, uvms_here
 
 from uvms_analysis.log.compare import compare
 from uvms_analysis.log.read import RunLog
@@ -24,8 +24,8 @@ def runs(tmp_path_factory) -> tuple[Outcome, Outcome]:
     folder = tmp_path_factory.mktemp("late")
     (folder / "late.yaml").write_text(SCENARIO)
     name = str(folder / "late.yaml")
-    graph = finished(uvms(folder / "graph", "run", name, "--composed"))
-    return graph, finished(uvms(folder / "alone", "simulate", name))
+    graph = finished(uvms_here(folder / "graph", "run", name, "--composed"))
+    return graph, finished(uvms_here(folder / "alone", "simulate", name))
 
 
 def test_the_graph_in_lockstep_equals_the_simulation(runs):
@@ -71,7 +71,9 @@ def test_the_plant_says_which_joint_states_have_come(runs):
     ],
 )
 def test_a_node_replays_a_log_with_late_joint_states(runs, tmp_path, node, topic):
-    replayed = finished(uvms(tmp_path, "replay", str(runs[0].folder / "run.mcap"), "--into", node))
+    replayed = finished(
+        uvms_here(tmp_path, "replay", str(runs[0].folder / "run.mcap"), "--into", node)
+    )
     (difference,) = compare(runs[0].log, RunLog.open(replayed.folder / "replay.mcap"), [topic])
     assert difference.recorded == difference.replayed == difference.common == 61
     assert difference.greatest == 0.0

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from graph import column, finished, own_domain, uvms
+from graph import column, finished, own_domain, uvms, uvms_here
 
 from uvms_core import topics
 from uvms_core.vehicle import dump_vehicle, load_vehicle
@@ -56,7 +56,7 @@ def sourced(tmp_path, monkeypatch):
 def test_a_graph_with_the_message_is_that_with_a_twist(sourced, tmp_path):
     """Published, read and recorded by our nodes in the message that a driver would use."""
     marine = finished(uvms(tmp_path / "marine", "run", *RUN, "--composed", "--set", MESSAGE))
-    twist = finished(uvms(tmp_path / "twist", "simulate", *RUN))
+    twist = finished(uvms_here(tmp_path / "twist", "simulate", *RUN))
     assert marine.log.topics["/sensors/dvl"] == MARINE
     assert twist.log.topics["/sensors/dvl"] != MARINE
     for name in ("position", "pose_covariance"):
@@ -72,6 +72,6 @@ def test_without_the_package_node_and_simulation_say_what_to_source(tmp_path):
     node = subprocess.run(command, env=own_domain(), capture_output=True, text=True, timeout=120)
     assert node.returncode == 2
     assert text in node.stderr
-    outcome = uvms(tmp_path / "simulate", "simulate", *RUN, "--set", MESSAGE)
+    outcome = uvms_here(tmp_path / "simulate", "simulate", *RUN, "--set", MESSAGE)
     assert outcome.code == 2
     assert text in outcome.err

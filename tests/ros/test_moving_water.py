@@ -1,7 +1,7 @@
 """Water that moves, on the real graph: what a scenario says of it reaches the plant's node."""
 
 import numpy as np
-from graph import column, finished, uvms
+from graph import column, finished, uvms_here
 
 from uvms_core import topics
 
@@ -15,8 +15,8 @@ SETTINGS = ("--set", "plant.current_ned_m_s=[0, 0, 0]", "--duration", "2", "--se
 
 
 def test_the_graph_has_the_water_of_the_simulation(tmp_path):
-    graph = finished(uvms(tmp_path / "graph", "run", "hover", *SETTINGS, "--composed")).log
-    alone = finished(uvms(tmp_path / "alone", "simulate", "hover", *SETTINGS)).log
+    graph = finished(uvms_here(tmp_path / "graph", "run", "hover", *SETTINGS, "--composed")).log
+    alone = finished(uvms_here(tmp_path / "alone", "simulate", "hover", *SETTINGS)).log
     for topic, name in ((topics.TRUE_ODOMETRY, "position"), (topics.TRUE_ODOMETRY, "nu")):
         ours, theirs = column(graph, topic, name), column(alone, topic, name)
         assert ours.shape == theirs.shape

@@ -4,7 +4,7 @@ The inertial unit is the hard case, since its samples start the ticks.
 """
 
 import numpy as np
-from graph import column, finished, uvms
+from graph import column, finished, uvms_here
 
 from uvms_core import topics
 
@@ -32,8 +32,8 @@ def test_the_graph_goes_on_without_the_samples_that_do_not_come(tmp_path):
     arguments = ["hover", "--vehicle", "bluerov2_alpha5", "--duration", "4", "--seed", "3"]
     for path, value in ERRORS.items():
         arguments += ["--set", f"vehicle.sensors.{path}={value}"]
-    graph = finished(uvms(tmp_path, "run", *arguments, "--composed"))
-    alone = finished(uvms(tmp_path / "alone", "simulate", *arguments))
+    graph = finished(uvms_here(tmp_path, "run", *arguments, "--composed"))
+    alone = finished(uvms_here(tmp_path / "alone", "simulate", *arguments))
     assert graph.summary["completed"] is True
     assert graph.summary["lockstep_timeouts"] == 0
     assert len(graph.log.series(topics.ODOMETRY)) == 81

@@ -4,7 +4,7 @@ import xml.etree.ElementTree as ElementTree
 
 import numpy as np
 import pytest
-from graph import Outcome, finished, uvms
+from graph import Outcome, finished, uvms_here
 from in_process import Peer, graph_of, parameters, spin_until
 from rclpy.node import Node
 
@@ -26,7 +26,7 @@ VEHICLE = load_vehicle()
 
 
 def outcome_of(folder, *arguments: str) -> Outcome:
-    return finished(uvms(folder, *arguments, "manipulation", "--duration", DURATION))
+    return finished(uvms_here(folder, *arguments, "manipulation", "--duration", DURATION))
 
 
 @pytest.fixture(scope="module")

@@ -1,4 +1,7 @@
-"""Make the pictures of viewer and report, and the movie, in docs/figures: `make pictures`."""
+"""Make the pictures of viewer and report, the movie, and what the tour prints: `make pictures`.
+
+`make pictures ARGS=tour` makes only the last of them, in a few seconds.
+"""
 
 import json
 import sys
@@ -7,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from gallery import GALLERY, MOVIE, MOVIE_SPEED, Shot, movie_told
+from printed import PAGE, printed_again
 from report_shot import photograph
 from report_shot import told as report_told
 
@@ -70,8 +74,21 @@ def report_of(source: LogSource) -> Path:
     return source.log.path.parent / "report.html"
 
 
+def print_tour(folder: Path) -> None:
+    """The numbers of docs/tour.md."""
+    told = PAGE.read_text(encoding="utf-8")
+    PAGE.write_text(printed_again(told, folder), encoding="utf-8")
+    print(PAGE, file=sys.stderr)
+
+
 if __name__ == "__main__":
+    if sys.argv[1:] not in ([], ["tour"]):
+        raise SystemExit(
+            f"make pictures: nothing is called {sys.argv[1:]}; choose tour, or no name"
+        )
     with tempfile.TemporaryDirectory() as temporary:
-        for each in GALLERY:
-            draw(each, Path(temporary))
-        photograph_report(film(Path(temporary)))
+        if not sys.argv[1:]:
+            for each in GALLERY:
+                draw(each, Path(temporary))
+            photograph_report(film(Path(temporary)))
+        print_tour(Path(temporary))

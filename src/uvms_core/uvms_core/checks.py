@@ -52,6 +52,11 @@ def trust_all(signals: tuple[S, ...]) -> tuple[S, ...]:
     return signals
 
 
+def is_trusted(signal: Any) -> bool:
+    """Whether the signal has been checked."""
+    return getattr(signal, _MARK, False)
+
+
 def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     """Check a signal by the annotations of its fields, unless that has been done; mark it.
 
@@ -64,7 +69,7 @@ def check(name: str, signal: Any, **names: Sequence[str]) -> None:
     Raises:
         SignalError: a field has a wrong type or shape, is not finite or not of unit length.
     """
-    checked = getattr(signal, _MARK, False)
+    checked = is_trusted(signal)
     if checked and not names:
         return
     if not checked and not names and _are_certainly_good((signal,)):
@@ -94,7 +99,7 @@ def trust_good(signals: Sequence[Any]) -> None:
 
     `check` then has little to do; where they are not marked it says what is wrong.
     """
-    if signals and not getattr(signals[0], _MARK, False) and _are_certainly_good(signals):
+    if signals and not is_trusted(signals[0]) and _are_certainly_good(signals):
         trust_all(tuple(signals))
 
 

@@ -4,13 +4,10 @@ They are loops: numba takes seconds to compile what numpy's slices, broadcasts a
 """
 
 import numpy as np
-from numpy.typing import NDArray
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner
 from uvms_observer.navigation.state import SIZE, NavigationState
-
-Places = NDArray[np.int64]
 
 
 @exact_inner
@@ -53,16 +50,18 @@ def product(A: Array, B: Array) -> Array:
 
 
 @exact_inner
-def filled(A: Array) -> tuple[Places, Places]:
-    """How many elements of each row (m,) are not 0, and in which columns they are (m, n)."""
-    counts = np.zeros(A.shape[0], np.int64)
-    places = np.empty(A.shape, np.int64)
-    for i in range(A.shape[0]):
-        for k in range(A.shape[1]):
-            if A[i, k] != 0.0:
-                places[i, counts[i]] = k
-                counts[i] += 1
-    return counts, places
+def subtract_products(P: Array, A: Array, B: Array) -> None:
+    """P <- P - A^T B, in place, with A (m, SIZE) and B (m, SIZE): three rows at a time."""
+    m = A.shape[0]
+    for a in range(0, m - 2, 3):
+        for i in range(SIZE):
+            x, y, z = A[a, i], A[a + 1, i], A[a + 2, i]
+            for j in range(SIZE):
+                P[i, j] = P[i, j] - x * B[a, j] - y * B[a + 1, j] - z * B[a + 2, j]
+    for a in range(m - m % 3, m):
+        for i in range(SIZE):
+            for j in range(SIZE):
+                P[i, j] -= A[a, i] * B[a, j]
 
 
 @exact_inner
@@ -72,9 +71,10 @@ def covariance_of(HP: Array, H: Array, N: Array) -> Array:
     S = np.empty((m, m))
     for i in range(m):
         for j in range(m):
-            total = N[i, j]
-            for k in range(SIZE):
-                if H[j, k] != 0.0:
-                    total += HP[i, k] * H[j, k]
-            S[i, j] = total
+            S[i, j] = N[i, j]
+    for j in range(m):
+        for k in range(SIZE):
+            if H[j, k] != 0.0:
+                for i in range(m):
+                    S[i, j] += HP[i, k] * H[j, k]
     return S

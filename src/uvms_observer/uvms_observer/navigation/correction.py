@@ -11,8 +11,12 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
-from uvms_dynamics.kernels.rotations import quat_multiply, rotation_vector_to_quat
-from uvms_observer.navigation.arrays import covariance_of, filled, product
+from uvms_dynamics.kernels.rotations import (
+    quat_multiply,
+    quat_normalize,
+    rotation_vector_to_quat,
+)
+from uvms_observer.navigation.arrays import covariance_of, product, subtract_products
 from uvms_observer.navigation.state import (
     DVL_MISALIGNMENT,
     DVL_SCALE,
@@ -64,7 +68,8 @@ def correct(
     else:
         known = _of_known_mounting(state.covariance, HP)
         gain = product(inverse(covariance_of(known, H, N)), known)
-    correct_target(state, H, gain, N, residual)
+    if state.target.shape[0] > 0:
+        correct_target(state, H, gain, N, residual)
     _correct_covariance(state.covariance, gain, H, HP, N)
     add_error(state, _weighted(residual, gain))
     return distance
@@ -139,15 +144,21 @@ def _of_known_mounting(P: Array, HP: Array) -> Array:
         for j in range(4):
             within[i, j] = P[_place(i), _place(j)]
         within[i, i] += TINY
-    weights, known = inverse(within), HP.copy()
+    weights, told, known = inverse(within), np.empty(4), HP.copy()
     for row in range(HP.shape[0]):
         for i in range(4):
-            told = 0.0
+            told[i] = 0.0
             for k in range(4):
-                told += weights[i, k] * HP[row, _place(k)]
-            if told != 0.0:
-                for j in range(SIZE):
-                    known[row, j] -= told * P[_place(i), j]
+                told[i] += weights[i, k] * HP[row, _place(k)]
+        s, x, y, z = told[0], told[1], told[2], told[3]
+        for j in range(SIZE):
+            known[row, j] = (
+                known[row, j]
+                - s * P[DVL_SCALE, j]
+                - x * P[DVL_MISALIGNMENT, j]
+                - y * P[DVL_MISALIGNMENT + 1, j]
+                - z * P[DVL_MISALIGNMENT + 2, j]
+            )
         for i in range(4):
             known[row, _place(i)] = 0.0
     return known
@@ -158,40 +169,25 @@ def _correct_covariance(P: Array, gain: Array, H: Array, HP: Array, N: Array) ->
     """(I - K H) P (I - K H)^T + K N K^T, first from the left, then from the right.
 
     `gain` is the transpose of K, (m, SIZE). The right side takes the matrix that the left one has
-    left, which keeps what it has gained in precision.
+    left, which keeps what it has gained in precision. In between, P holds the transpose of the
+    left product, so that all goes by rows.
     """
-    m = N.shape[0]
-    for i in range(SIZE):
-        for a in range(m):
-            factor = gain[a, i]
-            if factor != 0.0:
-                for j in range(SIZE):
-                    P[i, j] -= factor * HP[a, j]
-    counts, places = filled(H)
-    right = np.zeros(m)
-    for i in range(SIZE):
-        for a in range(m):
-            total = 0.0
-            for n in range(counts[a]):
-                k = places[a, n]
-                total += P[i, k] * H[a, k]
-            right[a] = -total
-        for a in range(m):
-            for b in range(m):
-                right[a] += gain[b, i] * N[b, a]
-        for a in range(m):
-            for j in range(SIZE):  # beyond i in vain, but in vector instructions
-                P[i, j] += right[a] * gain[a, j]
+    subtract_products(P, HP, gain)
+    right, noise = product(H, P), product(N, gain)
+    for a in range(N.shape[0]):
+        for i in range(SIZE):
+            right[a, i] -= noise[a, i]
+    subtract_products(P, gain, right)
     for i in range(SIZE):
         for j in range(i):
-            P[j, i] = P[i, j]
+            P[i, j] = P[j, i]
 
 
 @exact_inner
 def add_error(state: NavigationState, e: Array) -> None:
     """Add the error, state <- state (+) e; the attitude error turns about the axes of map_ned."""
-    turned = quat_multiply(rotation_vector_to_quat(e[6:9]), state.quaternion)
-    length = np.sqrt(turned.dot(turned))
+    turn = rotation_vector_to_quat(e[6:9])
+    turned = quat_normalize(quat_multiply(turn, state.quaternion))
     for i in range(3):
         state.position[i] += e[i]
         state.velocity[i] += e[3 + i]
@@ -201,4 +197,4 @@ def add_error(state: NavigationState, e: Array) -> None:
     for i in range(SIZE - FURTHER):
         state.further[i] += e[FURTHER + i]
     for i in range(4):
-        state.quaternion[i] = turned[i] / length
+        state.quaternion[i] = turned[i]

@@ -1,7 +1,7 @@
 """The navigation filter, eq. (20): gyrocompass and IMU, DVL, pressure, GPS ... to Odometry."""
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -26,6 +26,7 @@ from uvms_observer.errors import NotAlignedError
 from uvms_observer.navigation.begin.initialisation import lacking
 from uvms_observer.navigation.begin.levelling import check_gravity
 from uvms_observer.navigation.estimator import Estimator
+from uvms_observer.navigation.inertial.condition import ConditionCheck
 from uvms_observer.navigation.inertial.installation import installation
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.samples import Instruments, Reading, is_nearly_unit
@@ -40,6 +41,11 @@ from uvms_observer.navigation.trust.sensor_health import (
     trouble_of,
 )
 from uvms_observer.navigation.trust.sound import is_sound
+from uvms_observer.navigation.trust.top_speed import is_impossible
+from uvms_observer.navigation.trust.unit_trouble import UnitTrouble
+
+SWEPT = to_nanoseconds(2.0)
+"""How long an estimate has been wrong, at least, that has got a velocity no vehicle has."""
 
 
 class NavigationFilter:
@@ -59,9 +65,11 @@ class NavigationFilter:
         config = config or NavigationConfig()
         self._instruments = Instruments(vehicle, config)
         imu = installation(vehicle, config)
+        self._speed = imu.speed
         self._estimator = Estimator(
             imu, self._instruments.measurements, config, self._instruments.periods
         )
+        self._condition, self._unit_trouble = ConditionCheck(vehicle), UnitTrouble(vehicle)
         self._hull = imu.hull.motion
         self._last: Odometry | None = None
         self._imu, self._gravity = vehicle.sensors.imu, vehicle.environment.gravity_m_s2
@@ -120,8 +128,10 @@ class NavigationFilter:
             NotAlignedError: no IMU sample has come yet.
         """
         groups = {"imu": imu, "dvl": dvl, "pressure": pressure, "gps": gps, **further}
+        before = self._condition.copied()
         good, faults = self._screen(stamp, groups)
         if faults:
+            self._condition.back_to(before)
             raise faults[0]
         return self._step(stamp, good)
 
@@ -149,19 +159,45 @@ class NavigationFilter:
         readings = self._instruments.readings(groups)
         for samples in groups.values():
             checks.trust_good(samples)
+        oldest, has_begun = self._oldest, self._estimator.time is not None
+        plain = self._plain(groups.get(INERTIAL.name, ()), newest, stamp) if has_begun else ()
         for reading in readings:
+            at, _, name, sample = reading
+            is_due = max(newest.get(name, -1) + 1, oldest) <= at <= stamp
             try:
-                self._check_stamp(reading, stamp, newest)
-                self._check_start(reading)
-                reading = self._of_unit_length(reading)
-                checks.check(reading.name, reading.sample)
+                if not (is_due and has_begun and checks.is_trusted(sample)):  # else it is good
+                    reading = self._checked(reading, stamp, newest)
+                if not (name == INERTIAL.name and at in plain):
+                    reading = self._of_a_vehicle(reading)
             except SignalError as fault:
                 faults.append(fault)
-            else:
-                newest[reading.name] = reading.stamp
-                good.append(reading)
+                continue
+            newest[name] = at
+            good.append(reading)
         self.rejected += len(faults)
         return good, faults
+
+    def _plain(
+        self, samples: Sequence[ImuSample], newest: Mapping[str, int], stamp: int
+    ) -> Container[int]:
+        """Stamps of the unit's samples in which there is nothing to be judged one by one."""
+        if not samples or not all(map(checks.is_trusted, samples)):
+            return ()
+        begin = max(newest.get(INERTIAL.name, -1) + 1, self._oldest)
+        return self._condition.plain(samples, begin, stamp)
+
+    def _checked(self, reading: Reading, stamp: int, newest: dict[str, int]) -> Reading:
+        """A reading that is good, its quaternion of unit length; else SignalError."""
+        self._check_stamp(reading, stamp, newest)
+        self._check_start(reading)
+        reading = self._of_unit_length(reading)
+        checks.check(reading.name, reading.sample)
+        return reading
+
+    @property
+    def _oldest(self) -> int:
+        """Stamp of the oldest sample that can be used, ns."""
+        return self._stamp - self._latency
 
     def _check_start(self, reading: Reading) -> None:
         """An inertial unit that starts must feel gravity the right way round."""
@@ -175,6 +211,14 @@ class NavigationFilter:
         self.normalized += 1
         unit = reading.sample.quaternion / np.linalg.norm(reading.sample.quaternion)
         return reading._replace(sample=replace(reading.sample, quaternion=unit))
+
+    def _of_a_vehicle(self, reading: Reading) -> Reading:
+        """A reading that a vehicle under water may give, and as noisy as it is."""
+        if reading.name == INERTIAL.name:
+            return reading._replace(sample=self._condition.judged(reading.name, reading.sample))
+        if fault := self._instruments.measurements[reading.name].fault(reading.sample):
+            raise SignalError(f"{reading.name}.{fault}")
+        return reading
 
     def _step(
         self, stamp: int, readings: list[Reading], faults: Sequence[SignalError] = ()
@@ -231,6 +275,7 @@ class NavigationFilter:
         return joined(
             trouble_of(self.health()),
             consistency.trouble_of(self._estimator.inconsistent(), self.resets),
+            self._unit_trouble(self._estimator.state, self._condition.attitude_is_frozen),
         )
 
     def status(self) -> dict[str, int | float | str]:
@@ -249,7 +294,7 @@ class NavigationFilter:
         return counts
 
     def _check_stamp(self, reading: Reading, stamp: int, newest: dict[str, int]) -> None:
-        last, oldest = newest.get(reading.name, -1), self._stamp - self._latency
+        last, oldest = newest.get(reading.name, -1), self._oldest
         if max(last + 1, oldest) <= reading.stamp <= stamp:
             return
         what = f"{reading.name}.stamp is {reading.stamp} ns; it must"
@@ -278,6 +323,8 @@ class NavigationFilter:
 
     def _go_back_for(self, late: list[Reading]) -> None:
         """Take readings that came late at their own stamps, and repeat everything since."""
+        if not self._steps:  # it has begun anew since then
+            return
         again = [self._steps.pop()]
         while self._steps and again[0].begin >= late[0].stamp:
             again.insert(0, self._steps.pop())
@@ -286,9 +333,12 @@ class NavigationFilter:
 
     def _reset_where_lost(self, stamp: int) -> None:
         """Begin anew where the estimate cannot be right: nothing that is known explains it."""
-        since = consistency.given_up(self._estimator.tallies, stamp)
-        if not is_sound(self._estimator.state):
+        tallies, state = self._estimator.tallies, self._estimator.state
+        since = consistency.given_up(tallies, stamp)
+        if not is_sound(state):
             since = stamp
+        elif is_impossible(state, self._speed):
+            since = min(stamp - SWEPT, consistency.contradicted(tallies, stamp))
         if since is not None:
             self._estimator.restart(since)
             self._steps.clear()

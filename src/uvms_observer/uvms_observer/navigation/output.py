@@ -8,6 +8,7 @@ With d from the IMU to the body origin (body axes) and w = w_m - b_g:
 import numpy as np
 
 from uvms_core.signals import Array, Odometry
+from uvms_dynamics.kernels import products
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import body_rate, covariance_of, product, transposed
@@ -17,7 +18,7 @@ from uvms_observer.navigation.state import SIZE, Fields, NavigationState
 @exact_inner
 def _pose(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Position (3,) of the body origin and pose covariance (6, 6), both about map_ned axes."""
-    position = quat_to_matrix(state.quaternion) @ lever
+    position = products.product(quat_to_matrix(state.quaternion), lever)
     J, arm = np.zeros((6, SIZE)), skew(position)
     for i in range(3):
         J[i, i] = 1.0
@@ -39,9 +40,10 @@ def _twist(
     The rate is the gyro's, so that its noise is part of the result, of the velocity by the lever.
     """
     R = quat_to_matrix(state.quaternion)
-    arm, turned = skew(lever), R.T @ skew(state.velocity)
+    arm, turned = skew(lever), product(transposed(R), skew(state.velocity))
     omega = body_rate(state, rate)
-    velocity, swing = R.T @ state.velocity, arm @ omega
+    velocity = products.transposed_product(R, state.velocity)
+    swing = products.product(arm, omega)
     nu, J = np.empty(6), np.zeros((6, SIZE))
     G = np.zeros((6, 3))  # by the rate's error, which is -db_g - n
     for i in range(3):

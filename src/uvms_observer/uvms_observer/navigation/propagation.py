@@ -23,10 +23,17 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
-from uvms_dynamics.kernels.rotations import quat_multiply, quat_to_matrix, rotation_vector_to_quat
-from uvms_observer.navigation.state import FURTHER, SIZE, Fields, NavigationState
+from uvms_dynamics.kernels.rotations import (
+    quat_multiply,
+    quat_normalize,
+    quat_to_matrix,
+    rotation_vector_to_quat,
+)
+from uvms_observer.navigation.state import ATTITUDE, FURTHER, SIZE, Fields, NavigationState
 
 BEYOND = 5.0
+MOVED = ATTITUDE.stop
+"""Of the error states, the first ones, which others move; those after them only fade."""
 
 
 class ProcessNoise(NamedTuple):
@@ -81,8 +88,9 @@ def propagate(
             mean = 0.5 * (force_before[k] + force[k])
             thrust[i] += R[i, k] * (mean - state.accelerometer_bias[k])
     phi = np.empty(SIZE - 9)
-    for i in range(SIZE - 9):
-        phi[i] = np.exp(-dt * decay[i])
+    for i in range(SIZE - 9):  # many are the same
+        is_new = i == 0 or decay[i] != decay[i - 1]
+        phi[i] = np.exp(-dt * decay[i]) if is_new else phi[i - 1]
     _advance_mean(state, quat_multiply(middle, half), thrust, dt, gravity)
     _decay(state, variance, phi)
     _advance_covariance(state.covariance, R, thrust, dt, phi)
@@ -107,9 +115,9 @@ def _advance_mean(
         acceleration = thrust[i] + (gravity if i == 2 else 0.0)
         state.position[i] += (state.velocity[i] + 0.5 * acceleration * dt) * dt
         state.velocity[i] += acceleration * dt
-    length = np.sqrt(quaternion.dot(quaternion))
+    unit = quat_normalize(quaternion)
     for i in range(4):
-        state.quaternion[i] = quaternion[i] / length
+        state.quaternion[i] = unit[i]
 
 
 @exact_inner
@@ -127,35 +135,35 @@ def _decay(state: NavigationState, variance: Array, phi: Array) -> None:
 
 @exact_inner
 def _advance_covariance(P: Array, R: Array, thrust: Array, dt: float, phi: Array) -> None:
-    """P <- F P F^T: F on the columns of the symmetric P, then on those of the transpose."""
-    work = np.empty((3, 3, SIZE))
-    _transition(P, R, thrust, dt, phi, work)
+    """P <- F P F^T of the symmetric P: F on its rows, then on its columns.
+
+    Of the columns only those of the states that move; the others are the rows' mirror image.
+    """
     for i in range(SIZE):
-        for j in range(i):
-            P[i, j], P[j, i] = P[j, i], P[i, j]
-    _transition(P, R, thrust, dt, phi, work)
-    for i in range(SIZE):
+        _carry(P, i, R, thrust, dt)
+    columns = P.T
+    for j in range(MOVED):
+        _carry(columns, j, R, thrust, dt)
+    for i in range(MOVED):
         for j in range(i):
             mean = 0.5 * (P[i, j] + P[j, i])
             P[i, j] = mean
             P[j, i] = mean
+    for i in range(SIZE - MOVED):
+        for j in range(MOVED):
+            P[MOVED + i, j] *= phi[i]
+            P[j, MOVED + i] = P[MOVED + i, j]
+        for j in range(SIZE - MOVED):
+            P[MOVED + i, MOVED + j] *= phi[i] * phi[j]
 
 
 @exact_inner
 def _advance_cross(C: Array, R: Array, thrust: Array, dt: float, phi: Array) -> None:
-    """C <- C F^T, of a target (see `target.py`), which stays where it is.
-
-    In a matrix of the size for which `_transition` is compiled; the columns that are too many are
-    zero.
-    """
-    E, work = np.zeros((SIZE, SIZE)), np.empty((3, 3, SIZE))
+    """C <- C F^T, of a target (see `target.py`), which stays where it is."""
     for i in range(C.shape[0]):
-        for j in range(SIZE):
-            E[j, i] = C[i, j]
-    _transition(E, R, thrust, dt, phi, work)
-    for i in range(C.shape[0]):
-        for j in range(SIZE):
-            C[i, j] = E[j, i]
+        _carry(C, i, R, thrust, dt)
+        for k in range(SIZE - MOVED):
+            C[i, MOVED + k] *= phi[k]
 
 
 @exact_inner
@@ -180,8 +188,8 @@ def _add_excess(P: Array, R: Array, excess: Array, dt: float, period: float) -> 
         for j in range(3):
             gyro, accelerometer = 0.0, 0.0
             for k in range(3):
-                gyro += R[i, k] * excess[k] * R[j, k] * period
-                accelerometer += R[i, k] * excess[3 + k] * R[j, k] * period
+                gyro += R[i, k] * R[j, k] * (excess[k] * period)
+                accelerometer += R[i, k] * R[j, k] * (excess[3 + k] * period)
             P[i, j] += accelerometer * dt**3 / 3.0
             P[i, 3 + j] += 0.5 * accelerometer * dt**2
             P[3 + i, j] += 0.5 * accelerometer * dt**2
@@ -190,29 +198,32 @@ def _add_excess(P: Array, R: Array, excess: Array, dt: float, period: float) -> 
 
 
 @exact_inner
-def _transition(E: Array, R: Array, thrust: Array, dt: float, phi: Array, work: Array) -> None:
-    """Carry error states over the interval in place, E <- F E: one in each of SIZE columns.
+def _carry(E: Array, i: int, R: Array, thrust: Array, dt: float) -> None:
+    """Carry the error state in row i over the interval, e <- F e; what only fades is left.
 
-    Row by row, which numba makes vector instructions of.
+    In scalars: vectors of three would be allocated.
     """
-    gyro, middle, a = work[0], work[1], work[2]
-    for i in range(3):
-        for j in range(SIZE):  # the biases in the world; what the accelerometer's makes
-            gyro[i, j] = R[i, 0] * E[9, j] + R[i, 1] * E[10, j] + R[i, 2] * E[11, j]
-            a[i, j] = -(R[i, 0] * E[12, j] + R[i, 1] * E[13, j] + R[i, 2] * E[14, j])
-        for j in range(SIZE):
-            middle[i, j] = E[6 + i, j] - 0.5 * dt * gyro[i, j]
-    # the attitude error in the middle of the interval turns the specific force
-    for i in range(3):
-        k, m = (i + 1) % 3, (i + 2) % 3
-        for j in range(SIZE):
-            a[i, j] += middle[k, j] * thrust[m] - middle[m, j] * thrust[k]
-    for i in range(3):
-        for j in range(SIZE):
-            E[i, j] += (E[3 + i, j] + 0.5 * dt * a[i, j]) * dt
-            E[3 + i, j] += a[i, j] * dt
-            E[6 + i, j] -= gyro[i, j] * dt
-    for i in range(SIZE - 9):
-        if phi[i] != 1.0:
-            for j in range(SIZE):
-                E[9 + i, j] *= phi[i]
+    x, y, z = thrust[0], thrust[1], thrust[2]
+    # turned in the world since the begin, by the gyro's bias; the attitude's error in the middle
+    turn_x = (R[0, 0] * E[i, 9] + R[0, 1] * E[i, 10] + R[0, 2] * E[i, 11]) * dt
+    turn_y = (R[1, 0] * E[i, 9] + R[1, 1] * E[i, 10] + R[1, 2] * E[i, 11]) * dt
+    turn_z = (R[2, 0] * E[i, 9] + R[2, 1] * E[i, 10] + R[2, 2] * E[i, 11]) * dt
+    tilt_x = E[i, 6] - 0.5 * turn_x
+    tilt_y = E[i, 7] - 0.5 * turn_y
+    tilt_z = E[i, 8] - 0.5 * turn_z
+    # the acceleration's error, by the tilted specific force and by the accelerometer's bias
+    a_x = tilt_y * z - tilt_z * y
+    a_y = tilt_z * x - tilt_x * z
+    a_z = tilt_x * y - tilt_y * x
+    a_x -= R[0, 0] * E[i, 12] + R[0, 1] * E[i, 13] + R[0, 2] * E[i, 14]
+    a_y -= R[1, 0] * E[i, 12] + R[1, 1] * E[i, 13] + R[1, 2] * E[i, 14]
+    a_z -= R[2, 0] * E[i, 12] + R[2, 1] * E[i, 13] + R[2, 2] * E[i, 14]
+    E[i, 0] += (E[i, 3] + 0.5 * dt * a_x) * dt
+    E[i, 1] += (E[i, 4] + 0.5 * dt * a_y) * dt
+    E[i, 2] += (E[i, 5] + 0.5 * dt * a_z) * dt
+    E[i, 3] += a_x * dt
+    E[i, 4] += a_y * dt
+    E[i, 5] += a_z * dt
+    E[i, 6] -= turn_x
+    E[i, 7] -= turn_y
+    E[i, 8] -= turn_z

@@ -57,11 +57,11 @@ class Instruments:
             if name not in self._ranks and name not in self.unused and groups[name]:
                 choices = ", ".join(self._ranks)
                 raise SignalError(f"samples of {name!r}: the vehicle has {choices}")
-        return in_order(
+        return in_order([
             Reading(sample.stamp, rank, name, sample)
             for name, rank in self._ranks.items()
             for sample in groups.get(name, ())
-        )
+        ])  # fmt: skip
 
 
 def in_order(readings: Iterable[Reading]) -> list[Reading]:

@@ -70,7 +70,7 @@ class NavigationState(NamedTuple):
 
     def copied(self) -> "NavigationState":
         """The same values in arrays of their own."""
-        return NavigationState._make([part.copy() for part in self])
+        return NavigationState(*[part.copy() for part in self])
 
 
 Fields = tuple[Array, ...]

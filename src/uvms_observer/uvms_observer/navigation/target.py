@@ -19,8 +19,8 @@ from uvms_observer.navigation.state import SIZE, NavigationState
 TARGET_SIZE = 6
 POSE = 7
 """Place of each in `NavigationState.target`: position and quaternion."""
-MOST_TARGETS = SIZE // TARGET_SIZE
-"""What `propagation.py` carries along in a matrix of the state's own size."""
+MOST_TARGETS = 4
+"""The work of a correction grows with the square of their number."""
 
 
 def with_target(
@@ -62,10 +62,8 @@ def correct_target(
         e_T = K_T r,  C <- (C - K_T H P) (I - K H)^T + K_T N K^T,
         P_T <- P_T - K_T H C^T - C H^T K_T^T + K_T S K_T^T.
 
-    Called before the vehicle's own covariance P is corrected.
+    Called before the vehicle's own covariance P is corrected, where there are targets.
     """
-    if state.target.shape[0] == 0:
-        return
     HP, CHt = H @ state.covariance, state.cross @ transposed(H)
     S = HP @ transposed(H)
     for i in range(N.shape[0]):

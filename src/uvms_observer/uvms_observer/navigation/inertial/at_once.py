@@ -1,32 +1,65 @@
 """Samples of the inertial unit in one call: the usual case of what `Estimator` does in steps.
 
-That is: readings near the one before them, no gaps between them, a gyrocompass that is believed.
-Each carries the state, then its attitude corrects it.
+That is: readings near the one before them, no gaps between them, all as noisy as they say, a
+gyrocompass that is believed. Each carries the state, then its attitude corrects it.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import chain
+from operator import attrgetter, is_not
 
 import numpy as np
 
+from uvms_core.sensors import INERTIAL
 from uvms_core.signals import NANOSECONDS, Array, ImuSample
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_observer.navigation.inertial.installation import Stated
 from uvms_observer.navigation.inertial.unknown_motion import GAP
 from uvms_observer.navigation.measurements.imu import correct_attitude
 from uvms_observer.navigation.propagation import propagate
+from uvms_observer.navigation.samples import Reading
 from uvms_observer.navigation.state import Fields
 from uvms_observer.navigation.trust.innovation_gate import followed
 
 QUATERNION, RATE, FORCE, WIDTH = 0, 4, 7, 10
 """Where they begin in a row of `packed`, and how long it is."""
+_PARTS = attrgetter("quaternion", "angular_velocity", "linear_acceleration")
+_COVARIANCES = attrgetter(
+    "orientation_covariance", "angular_velocity_covariance", "linear_acceleration_covariance"
+)
+
+
+def alike(
+    readings: Sequence[Reading], excess_of: Callable[[ImuSample], Stated]
+) -> tuple[list[ImuSample], Stated | None]:
+    """The unit's samples that come first, with an attitude, and all as noisy as they say.
+
+    Args:
+        readings: in the order of their stamps.
+        excess_of: what noise a sample states.
+
+    Returns:
+        The samples, and what they state; None where there are none.
+    """
+    samples: list[ImuSample] = []
+    stated: Stated | None = None
+    before: tuple[Array, ...] = ()
+    for _, _, name, sample in readings:
+        if name != INERTIAL.name or not sample.oriented:
+            break
+        covariances = _COVARIANCES(sample)
+        if stated is None or any(map(is_not, covariances, before)):  # many share their arrays
+            excess = excess_of(sample)
+            if stated is not None and excess != stated:
+                break
+            before, stated = covariances, excess
+        samples.append(sample)
+    return samples, stated
 
 
 def packed(samples: Sequence[ImuSample]) -> tuple[Array, Array]:
     """Stamps (k,) ns, and attitudes, rates and forces (k, WIDTH), of samples."""
-    parts = [
-        part
-        for sample in samples
-        for part in (sample.quaternion, sample.angular_velocity, sample.linear_acceleration)
-    ]
+    parts = tuple(chain.from_iterable(map(_PARTS, samples)))
     stamps = np.array([sample.stamp for sample in samples])
     return stamps, np.concatenate(parts).reshape(-1, WIDTH)
 

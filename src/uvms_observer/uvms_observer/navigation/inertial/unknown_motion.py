@@ -48,8 +48,8 @@ def spread(fields: Fields, turn: Array, change: Array, dt: float) -> None:
         for j in range(3):
             turned, moved = 0.0, 0.0
             for k in range(3):
-                turned += R[i, k] * turn[k] ** 2 * R[j, k]
-                moved += R[i, k] * change[k] ** 2 * R[j, k]
+                turned += R[i, k] * R[j, k] * turn[k] ** 2
+                moved += R[i, k] * R[j, k] * change[k] ** 2
             P[6 + i, 6 + j] += turned
             P[3 + i, 3 + j] += moved
             P[i, j] += 0.25 * dt**2 * moved

@@ -60,6 +60,12 @@ class Measurement(ABC):
         """Whether the sample says anything; a GPS under water does not."""
         return True
 
+    def fault(self, sample: Any) -> str:
+        """Why the sample cannot be one of a vehicle under water, beginning with the field; empty:
+        it can.
+        """
+        return ""
+
     def out_of_reach(self, state: NavigationState) -> str:
         """Why the sensor cannot be expected to give samples here; empty: it should."""
         return ""

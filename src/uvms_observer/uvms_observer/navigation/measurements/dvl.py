@@ -21,13 +21,14 @@ import numpy as np
 from uvms_core.signals import WATER_LOCK, Array, DvlSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Dvl
+from uvms_dynamics.kernels import products
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
-from uvms_observer.navigation.arrays import body_rate, subtract_from, transposed
+from uvms_observer.navigation.arrays import body_rate, product, subtract_from, transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.inertial.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Linear, Measurement
-from uvms_observer.navigation.measurements.noise import as_white, most_alike
+from uvms_observer.navigation.measurements.noise import MOST, as_white, most_alike
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     CURRENT,
@@ -97,7 +98,7 @@ class DvlVelocity(Measurement):
             return 0.0
         known = self._noise**2 + (self._scale * sample.velocity) ** 2
         excess = float((stated - known).max())
-        return excess if excess > 0.0 else 0.0
+        return min(excess, MOST) if excess > 0.0 else 0.0
 
     def _correct_alone(
         self, state: NavigationState, sample: DvlSample, variance: float, rate: Array, gate: float
@@ -149,10 +150,11 @@ def velocity(
             over[i] -= state.further[CURRENT - FURTHER + i]
             before[i] -= state.further[CURRENT - FURTHER + i]
     mount, turn = _mount(state), body_rate(state, rate)
-    axes, arm = mount @ transposed(R), mount @ skew(lever)
-    turned = axes @ skew(over)
+    axes, arm = product(mount, transposed(R)), product(mount, skew(lever))
+    turned = product(axes, skew(over))
     motion, known = _motion(R, over, lever, turn), _motion(R, before, lever, turn)
-    reading, scaled, cross = mount @ motion, mount @ known, skew(known)
+    reading, scaled = products.product(mount, motion), products.product(mount, known)
+    cross = skew(known)
     scale = 1.0 + state.further[DVL_SCALE - FURTHER]
     H = np.zeros((3, SIZE))
     for i in range(3):
@@ -185,7 +187,7 @@ def _mount(state: NavigationState) -> Array:
 @exact_inner
 def _motion(R: Array, over: Array, lever: Array, turn: Array) -> Array:
     """Velocity of the transducer (3,) m/s, body axes, at the rate `turn`, rad/s."""
-    motion, swing = transposed(R) @ over, skew(lever) @ turn
+    motion, swing = products.transposed_product(R, over), products.product(skew(lever), turn)
     for i in range(3):
         motion[i] -= swing[i]
     return motion
@@ -207,7 +209,7 @@ def correct_velocity(
     residual, H = velocity(state, lever, rate, in_water)
     subtract_from(measured, residual)
     arm = skew(lever)
-    N = arm @ transposed(arm)
+    N = product(arm, transposed(arm))
     for i in range(3):
         for k in range(3):
             N[i, k] = (variance if i == k else 0.0) + rate_variance * N[i, k]
@@ -233,7 +235,7 @@ def keep_reading(state: NavigationState, before: Array) -> None:
     P, R = state.covariance, quat_to_matrix(state.quaternion)
     turn = skew(state.velocity - before)
     b = state.velocity - state.reference
-    mount, scale = skew(b) @ R, 1.0 + state.further[DVL_SCALE - FURTHER]
+    mount, scale = product(skew(b), R), 1.0 + state.further[DVL_SCALE - FURTHER]
     T = np.empty((3, 7))  # by attitude, misalignment and scale
     for i in range(3):
         for k in range(3):
@@ -253,6 +255,9 @@ def keep_reading(state: NavigationState, before: Array) -> None:
     for j in range(SIZE):
         for i in range(3):
             P[j, 3 + i] -= changed[i, j]
+    for i in range(3):
+        for j in range(i):  # rounded in another order
+            P[3 + j, 3 + i] = P[3 + i, 3 + j]
     for j in range(state.cross.shape[0]):
         for i in range(3):
             state.cross[j, 3 + i] -= _mixed(T, state.cross[j], i)

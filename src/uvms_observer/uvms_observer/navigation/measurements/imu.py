@@ -10,6 +10,7 @@ import numpy as np
 
 from uvms_core.signals import Array, ImuSample, to_nanoseconds, to_seconds
 from uvms_core.vehicle import Vehicle
+from uvms_dynamics.kernels import products
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_dynamics.kernels.rotations import (
     quat_conjugate,
@@ -19,7 +20,7 @@ from uvms_dynamics.kernels.rotations import (
     rotation_vector_to_quat,
     skew,
 )
-from uvms_observer.navigation.arrays import transposed
+from uvms_observer.navigation.arrays import product, transposed
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.inertial.installation import attitude_variance, known_variance
 from uvms_observer.navigation.inertial.unknown_motion import ACCELERATION_M_S2
@@ -53,7 +54,7 @@ class Gyrocompass(Measurement):
         """Whether there is an attitude, or it is time for gravity."""
         return sample.oriented or sample.stamp % EVERY < self._period
 
-    def variance_of(self, sample: ImuSample) -> Array:
+    def _variance_of(self, sample: ImuSample) -> Array:
         """Of the noise of an attitude (3,) rad^2, about the body axes."""
         return with_stated(self.variance, sample.orientation_covariance, self._known)
 
@@ -62,14 +63,14 @@ class Gyrocompass(Measurement):
         if not sample.oriented:
             force, variance = sample.linear_acceleration, self._force_variance
             return correct_gravity(tuple(state), force, self._gravity, variance, gate)
-        return correct_attitude(tuple(state), sample.quaternion, self.variance_of(sample), gate)
+        return correct_attitude(tuple(state), sample.quaternion, self._variance_of(sample), gate)
 
 
 @exact_inner
 def attitude(state: NavigationState, measured: Array) -> tuple[Array, Array]:
     """Rotation vector (3,) rad, map_ned, from the expected to the measured attitude, and H."""
     R = quat_to_matrix(state.quaternion)
-    turn = rotation_vector_to_quat(R @ state.compass_bias)
+    turn = rotation_vector_to_quat(products.product(R, state.compass_bias))
     expected = quat_multiply(turn, state.quaternion)
     H = np.zeros((3, SIZE))
     for i in range(3):
@@ -89,7 +90,7 @@ def correct_attitude(fields: Fields, measured: Array, variance: Array, gate: flo
     for i in range(3):
         for k in range(3):
             scaled[i, k] = R[i, k] * variance[k]
-    return correct(state, H, residual, scaled @ transposed(R), gate)
+    return correct(state, H, residual, product(scaled, transposed(R)), gate)
 
 
 @exact_inner
@@ -98,7 +99,7 @@ def specific_force(state: NavigationState, gravity: float) -> tuple[Array, Array
     R = quat_to_matrix(state.quaternion)
     up = np.zeros(3)
     up[2] = -gravity
-    turned, reading = R.T @ skew(up), R.T @ up
+    turned, reading = product(transposed(R), skew(up)), products.transposed_product(R, up)
     H = np.zeros((3, SIZE))
     for i in range(3):
         H[i, 12 + i] = 1.0

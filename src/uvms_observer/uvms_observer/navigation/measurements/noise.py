@@ -23,6 +23,9 @@ ByAxis = tuple[float, float, float]
 NOTHING: ByAxis = 0.0, 0.0, 0.0
 """What `beyond` finds in the usual case."""
 
+MOST = 1e6
+"""Largest variance that is taken from a message, in SI units: with it a sample says nothing, and
+beside it double precision still holds the other states."""
 LASTING_S = 100.0
 """How long an error without a state is taken to last, s: some of the vehicle's manoeuvres, in which
 it changes its sign."""
@@ -50,7 +53,11 @@ def beyond(stated: Array, known: ByAxis) -> ByAxis:
     x, y, z = stated.item(0), stated.item(4), stated.item(8)
     if x <= known[0] and y <= known[1] and z <= known[2]:
         return NOTHING
-    return max(0.0, x - known[0]), max(0.0, y - known[1]), max(0.0, z - known[2])
+    return (
+        min(max(0.0, x - known[0]), MOST),
+        min(max(0.0, y - known[1]), MOST),
+        min(max(0.0, z - known[2]), MOST),
+    )
 
 
 def as_white(std: float, rate_hz: float) -> float:

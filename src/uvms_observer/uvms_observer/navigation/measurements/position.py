@@ -4,6 +4,7 @@ import numpy as np
 
 from uvms_core.signals import Array
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.products import product
 from uvms_dynamics.kernels.rotations import quat_to_matrix, skew
 from uvms_observer.navigation.arrays import subtract_from
 from uvms_observer.navigation.correction import correct
@@ -13,7 +14,7 @@ from uvms_observer.navigation.state import SIZE, NavigationState
 @exact_inner
 def position(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Position of the sensor (3,) m, map_ned, p + R d, and H."""
-    offset = quat_to_matrix(state.quaternion) @ lever
+    offset = product(quat_to_matrix(state.quaternion), lever)
     H, arm = np.zeros((3, SIZE)), skew(offset)
     for i in range(3):
         H[i, i] = 1.0

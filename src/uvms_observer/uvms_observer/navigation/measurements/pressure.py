@@ -6,12 +6,18 @@ from uvms_core.signals import Array, PressureSample
 from uvms_core.vehicle import Vehicle
 from uvms_core.vehicle.sensors import Pressure
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
+from uvms_dynamics.kernels.products import product
 from uvms_dynamics.kernels.rotations import quat_to_matrix
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.measurements.base import Measurement
 from uvms_observer.navigation.measurements.noise import as_white
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import DEPTH_BIAS, FURTHER, SIZE, Fields, NavigationState
+
+ABOVE_M = 2.0
+"""Depth above the surface that no vehicle has, whatever the weather has done to the air."""
+DEEPEST_M = 12_000.0
+"""Deeper than any sea."""
 
 
 class PressureDepth(Measurement):
@@ -32,6 +38,16 @@ class PressureDepth(Measurement):
         else:
             self._variance += as_white(section.bias_pa / self._gradient, section.rate_hz)
 
+    def fault(self, sample: PressureSample) -> str:
+        """As `Measurement.fault`."""
+        depth = (sample.pressure - self._surface) / self._gradient
+        if -ABOVE_M <= depth <= DEEPEST_M:
+            return ""
+        return (
+            f"pressure is {sample.pressure:.6g} Pa, a depth of {depth:.3g} m; it must be between"
+            f" {-ABOVE_M:g} and {DEEPEST_M:g} m: the absolute pressure in Pa, with that of the air"
+        )
+
     def correct(
         self, state: NavigationState, sample: PressureSample, rate: Array, gate: float
     ) -> float:
@@ -45,7 +61,7 @@ class PressureDepth(Measurement):
 @exact_inner
 def depth(state: NavigationState, lever: Array) -> tuple[Array, Array]:
     """Depth that the pressure should show (1,) m, and H."""
-    offset = quat_to_matrix(state.quaternion) @ lever
+    offset = product(quat_to_matrix(state.quaternion), lever)
     H = np.zeros((1, SIZE))
     H[0, 2] = 1.0
     H[0, 6] = offset[1]

@@ -57,11 +57,20 @@ def given_up(tallies: Mapping[str, "Tally"], stamp: int) -> int | None:
 
     Only sensors that have been used before, and whose samples still come, are witnesses.
     """
+    excluded = [tally for tally in tallies.values() if tally.excluded]
+    if len(excluded) < TOGETHER:
+        return None
     since = sorted(
-        tally.since
-        for tally in tallies.values()
-        if tally.excluded and tally.since is not None and tally.used is not None
+        tally.since for tally in excluded if tally.since is not None and tally.used is not None
     )
     if len(since) < TOGETHER or stamp - since[TOGETHER - 1] < FOR:
         return None
     return since[TOGETHER - 1]
+
+
+def contradicted(tallies: Mapping[str, "Tally"], stamp: int) -> int:
+    """Since when (ns) some sensor has contradicted the estimate at `stamp`."""
+    return min(
+        (tally.since for tally in tallies.values() if tally.row and tally.since is not None),
+        default=stamp,
+    )

@@ -2,16 +2,13 @@
 
 from typing import Any, NamedTuple
 
-import numpy as np
-
-from uvms_core.signals import Array
 from uvms_observer.navigation.measurements.base import Measurement
 
 
 class Repeated(NamedTuple):
     """The last reading of a sensor, and how many times in a row it has come."""
 
-    values: Array
+    values: list[float]
     times: int
 
 
@@ -19,7 +16,7 @@ def is_stuck(last: dict[str, Repeated], name: str, measurement: Measurement, sam
     """Whether a sample is one too many; `last` readings by sensor are kept up to date."""
     if measurement.most_alike is None:
         return False
-    values, before = measurement.reading(sample), last.get(name)
-    same = before is not None and np.array_equal(before.values, values)
+    values, before = measurement.reading(sample).tolist(), last.get(name)
+    same = before is not None and before.values == values
     last[name] = Repeated(values, before.times + 1 if before is not None and same else 1)
     return last[name].times > measurement.most_alike

@@ -13,9 +13,11 @@ it explains them all it goes on in place of the first one.
 Multiple hypotheses: Bar-Shalom, Li and Kirubarajan (2001), sec. 11.6.
 """
 
+from bisect import bisect_right
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
 from functools import partial
+from operator import attrgetter
 
 from uvms_core.signals import to_nanoseconds
 from uvms_observer.navigation.estimator import Estimator
@@ -53,6 +55,7 @@ MISSED = 0.01
 MEMORY = to_nanoseconds(5.0)
 """How far back a trial may begin."""
 
+_BEGIN = attrgetter("begin")
 Doubt = Callable[[Estimator], None]
 Trial = tuple[list[Step], Estimator]
 
@@ -127,7 +130,7 @@ def _explanations(steps: Sequence[Step], suspect: Suspect) -> list[tuple[int, Do
 
 def _last_before(steps: Sequence[Step], time: int) -> int:
     """Index of the last step that begins at `time` (ns) or before; -1 where none does."""
-    return next((k for k in range(len(steps) - 1, -1, -1) if steps[k].begin <= time), -1)
+    return bisect_right(steps, time, key=_BEGIN) - 1
 
 
 def _tried_from(

@@ -29,6 +29,10 @@ END = 0.25
 """And from here on it does not any more."""
 MOST_M_S = 5.0
 """For hulls with hardly any damping."""
+IMPOSSIBLE = 5.0
+"""Times that std along each axis: two and a half times the top speed. No vehicle has that."""
+SURE = 3.0
+"""Standard deviations of the estimate by which it is beyond that."""
 NOISE_M_S = 1e-3
 """None; this keeps the covariance regular."""
 
@@ -64,6 +68,19 @@ def bounded(state: NavigationState, kept: Lasting | None, std: float, stamp: int
     kept = lasting.aged(state, kept, stamp)
     lasting.correct_by_changes(state, sample)
     return Following(state, kept)
+
+
+def is_impossible(state: NavigationState, std: float) -> bool:
+    """Whether the estimate is sure of a velocity that the vehicle cannot have: then it is wrong.
+
+    Args:
+        std: of its velocity along an axis, m/s.
+    """
+    if max(map(abs, state.velocity.tolist())) <= IMPOSSIBLE * std:  # the usual case, at once
+        return False
+    variance = np.diag(state.covariance)[VELOCITY]
+    beyond = np.abs(state.velocity) - SURE * np.sqrt(np.maximum(variance, 0.0))
+    return bool((beyond > IMPOSSIBLE * std).any())
 
 
 def _at_rest(state: NavigationState) -> Linear:
