@@ -37,7 +37,7 @@ class Interval(NamedTuple):
 
     begin: int  # ns
     end: int  # ns
-    thrust: Array | None  # (m,) commanded, N; None: not known
+    told: Allocation | None  # what was commanded at its beginning, or the newest before
     before: Odometry  # the estimate at its beginning
 
 
@@ -76,21 +76,22 @@ class HullMotion:
 
     def note(self, stamp: int, before: Odometry) -> None:
         """An interval that ends at `stamp` (ns), and the estimate at its beginning."""
-        known = self._thrust(before.stamp)
-        if known is None and not self._intervals:
+        told, self._told = self._told, None
+        if told is None and not self._intervals:
             return
-        self._intervals.append(Interval(before.stamp, stamp, known, before))
-        while self._intervals[0].end < stamp - MEMORY:
+        self._intervals.append(Interval(before.stamp, stamp, told, before))
+        if self._intervals[0].end < stamp - MEMORY:
             self._intervals.popleft()
 
-    def _thrust(self, begin: int) -> Array | None:
-        told, self._told = self._told, None
+    def _thrust(self, interval: Interval) -> Array | None:
+        """(m,) N, commanded over an interval; None: not known."""
+        told = interval.told
         if told is not None and len(told.thrust) == self._matrix.shape[1]:
             share = told.effectiveness if len(told.effectiveness) else np.ones(len(told.thrust))
             works = bool((share >= BROKEN).all())
             self._held = (told.stamp, share * told.thrust) if works else None
         held = self._held
-        return held[1] if held is not None and 0 <= begin - held[0] <= HOLDS else None
+        return held[1] if held is not None and 0 <= interval.begin - held[0] <= HOLDS else None
 
     def at(self, stamp: int) -> ModelVelocity | None:
         """What the model says at a stamp (ns); None where the thrusts have not been known."""
@@ -124,7 +125,8 @@ class HullMotion:
             self._track.popleft()
 
     def _through(self, interval: Interval) -> None:
-        if interval.thrust is None:
+        commanded = self._thrust(interval)
+        if commanded is None:
             self._track.clear()
             return
         now = interval.before
@@ -132,10 +134,10 @@ class HullMotion:
             self._track.clear()
             self._since = interval.begin
             self._lag = LaggedThrusts(self._vehicle)
-            self._lag.step(10.0, interval.thrust)
+            self._lag.step(10.0, commanded)
             self._track.append(ModelVelocity(interval.begin, now.nu[:3].copy(), now.nu[3:]))
         dt = to_seconds(interval.end - interval.begin)
-        thrust = self._lag.step(dt, interval.thrust)
+        thrust = self._lag.step(dt, commanded)
         velocity = through_water(
             self._model,
             self._inverse_mass,
