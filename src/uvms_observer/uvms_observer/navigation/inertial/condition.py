@@ -1,6 +1,6 @@
 """What the samples of an inertial unit tell of the unit itself, before any state is compared.
 
-- No vehicle under water feels less than a fifth of gravity or more than five times as much, or
+- No vehicle under water feels less than 0.15 of gravity or more than five times as much, or
   turns by ten radians a second. A sample beyond that is none: gravity taken off, units of g, a
   broken part. Nor are rates or forces that are the same to the last bit for a while.
 - An attitude that is the same to the last bit for longer has not been measured; rates and forces
@@ -26,8 +26,9 @@ from uvms_observer.navigation.inertial.at_once import packed
 from uvms_observer.navigation.inertial.installation import known_variance
 from uvms_observer.navigation.measurements.noise import most_alike
 
-FORCE_G = (0.2, 5.0)
-"""Sizes of the specific force that a vehicle may feel, over gravity's."""
+FORCE_G = (0.15, 5.0)
+"""Sizes of the specific force that a vehicle may feel, over gravity's: one of ten times the weight
+of the water that it displaces falls at 0.18."""
 RATE_RAD_S = 10.0
 """Fastest turn."""
 FROZEN_S = 0.15
@@ -41,6 +42,9 @@ QUIET, SEEN = 0.3, 30
 that is computed without, in a simulation or a test, may well read the same."""
 ROUGH = 6.0
 """Times the noise of the vehicle file from which on it is noisier than that."""
+KNOCK_S = 1.0
+"""How long an arm that runs into its stops shakes the hull, s: such motion is real, and the screen
+must see it. What goes on for longer is noise."""
 STEP = 1.1
 """Factor by which the median goes up or down with each sample."""
 ROW, FAR, LEAP = 7, 4.0, 3.0
@@ -58,7 +62,8 @@ class Condition(NamedTuple):
 
     values: Array  # (5, 6) rates and forces of the last two samples; medians of |d|; how many |d|
     # in a row have been far above it; of how many samples the noise has to be made up for
-    seen: Array  # (2,) how many |d| of rates and of forces have been noise
+    seen: Array  # (3,) how many |d| of rates and of forces have been noise; how many samples in a
+    # row have been rougher than that
     attitude: Array  # (4,) of the last one
     same: Array  # (3,) samples in a row that have been the same: attitude, rate, force
     times: Array  # (2,) ns, of the last two
@@ -88,11 +93,12 @@ class ConditionCheck:
             ]
         )
         self._period = to_nanoseconds(1.0 / imu.rate_hz)
+        self._knock = KNOCK_S * imu.rate_hz
         self._usual = MEDIAN * self._noise
         self._quiet = QUIET * MEDIAN * np.array([gyro, force])
         none = np.zeros((5, 6))
         none[2] = self._usual
-        self._now = Condition(none, np.zeros(2), np.zeros(4), np.zeros(3), np.full(2, -np.inf))
+        self._now = Condition(none, np.zeros(3), np.zeros(4), np.zeros(3), np.full(2, -np.inf))
 
     def copied(self) -> Condition:
         """What is known by now."""
@@ -141,7 +147,7 @@ class ConditionCheck:
                 f" {self._least:.3g} to {self._most:.3g} m/s^2 under water, with gravity"
             )
         readings = sample.quaternion, rate, force
-        noisy = follow(*self._now, self._usual, self._quiet, sample.stamp, *readings, self._period)
+        follow(*self._now, self._usual, self._quiet, sample.stamp, *readings, self._period)
         for part in (RATE, FORCE):
             if self._is_frozen(part):
                 raise SignalError(
@@ -150,7 +156,7 @@ class ConditionCheck:
                 )
         if sample.oriented and self.attitude_is_frozen:
             sample = replace(sample, oriented=False)
-        return self._with_noise(sample) if noisy > ROUGH else sample
+        return self._with_noise(sample) if self._now.seen[2] > self._knock else sample
 
     @property
     def attitude_is_frozen(self) -> bool:
@@ -245,6 +251,7 @@ def follow(
         values[1, i], values[0, i] = values[0, i], value
         most = max(most, values[2, i] / usual[i])
     times[1], times[0] = times[0], stamp
+    seen[2] = seen[2] + 1.0 if most > ROUGH else 0.0
     return most
 
 
