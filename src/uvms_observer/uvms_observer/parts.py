@@ -11,10 +11,10 @@ from uvms_core.part import Output, Part
 from uvms_core.plugin import create, prepared
 from uvms_core.sensors import inertial
 from uvms_core.signals import NOTHING_YET, DisturbanceBudget, Odometry, SensorGaps, Wrench
-from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Input, Previous, Same, Tick
+from uvms_core.tick_gate import KEEP, CompanionBefore, Delayed, Previous, Same, Tick
 from uvms_core.topics import Topic
 from uvms_core.vehicle import Vehicle
-from uvms_observer.arrivals import sensor_inputs, used_sensors
+from uvms_observer.arrivals import navigation_inputs, used_sensors
 from uvms_observer.disturbance import ObserverConfig
 from uvms_observer.interfaces import NavigationEstimator, ObserverLaw
 from uvms_observer.navigation import NavigationConfig
@@ -54,9 +54,7 @@ class NavigationPart(Part):
         self.every = period
         self.trigger = inertial(vehicle).topic
         self._sensors = {sensor.name: sensor.topic.name for sensor in used_sensors(vehicle)}
-        self.inputs: dict[Topic, Input] = {**sensor_inputs(vehicle)}
-        if hasattr(self.filter, "inform"):
-            self.inputs[topics.ALLOCATION] = CompanionBefore(period)
+        self.inputs = navigation_inputs(vehicle, period)
         self._faults: Sequence[UvmsError] = ()
         self._begun = False
         self._known, self._waits_for = True, ""

@@ -14,7 +14,7 @@ from uvms_core.sensors import inertial
 from uvms_core.signals import Odometry
 from uvms_core.tick_gate import Same, Tick
 from uvms_core.vehicle import Vehicle
-from uvms_observer.arrivals import sensor_inputs
+from uvms_observer.arrivals import navigation_inputs
 
 EXACT = 1e-6
 """Std of each value, m, rad, m/s and rad/s: far below any sensor's, and far above the rounding of
@@ -24,8 +24,8 @@ numbers at the size of a map (1e6 m x 2e-16)."""
 class TruthPart(Part):
     """Odometry from `ground_truth/odometry`, at the same ticks as a filter gives it.
 
-    It waits for the sensors' samples as a filter does and ignores them, so that a run differs from
-    one with a filter in nothing but the estimate.
+    It waits for the sensors' samples and the thrusts as a filter does and ignores them, so that a
+    run differs from one with a filter in nothing but the estimate.
 
     Args:
         vehicle: its sensors.
@@ -37,7 +37,7 @@ class TruthPart(Part):
     def __init__(self, vehicle: Vehicle, period: int) -> None:
         self.every = period
         self.trigger = inertial(vehicle).topic
-        self.inputs = {**sensor_inputs(vehicle), topics.TRUE_ODOMETRY: Same()}
+        self.inputs = {**navigation_inputs(vehicle, period), topics.TRUE_ODOMETRY: Same()}
         self.estimate: Odometry | None = None
         """The last one."""
 

@@ -162,7 +162,7 @@ class Estimator:
         name, trust, imu = INERTIAL.name, self._trust, self._imu
         if self._compass is None or self.time is None or self._memory.row:
             return 0
-        samples, excess = alike(readings, imu.excess_of)
+        samples, excess = alike(readings, name, imu.excess_of)
         if excess is None or trust.tallies[name].row:
             return 0
         self._listen(excess)

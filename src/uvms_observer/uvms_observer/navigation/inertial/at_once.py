@@ -10,7 +10,6 @@ from operator import attrgetter, is_not
 
 import numpy as np
 
-from uvms_core.sensors import INERTIAL
 from uvms_core.signals import NANOSECONDS, Array, ImuSample
 from uvms_dynamics.kernels.jit import exact_inner, exact_kernel
 from uvms_observer.navigation.inertial.installation import Stated
@@ -30,12 +29,13 @@ _COVARIANCES = attrgetter(
 
 
 def alike(
-    readings: Sequence[Reading], excess_of: Callable[[ImuSample], Stated]
+    readings: Sequence[Reading], unit: str, excess_of: Callable[[ImuSample], Stated]
 ) -> tuple[list[ImuSample], Stated | None]:
     """The unit's samples that come first, with an attitude, and all as noisy as they say.
 
     Args:
         readings: in the order of their stamps.
+        unit: its name.
         excess_of: what noise a sample states.
 
     Returns:
@@ -45,7 +45,7 @@ def alike(
     stated: Stated | None = None
     before: tuple[Array, ...] = ()
     for _, _, name, sample in readings:
-        if name != INERTIAL.name or not sample.oriented:
+        if name != unit or not sample.oriented:
             break
         covariances = _COVARIANCES(sample)
         if stated is None or any(map(is_not, covariances, before)):  # many share their arrays

@@ -28,7 +28,7 @@ from uvms_observer.navigation.arrays import body_rate, product, subtract_from, t
 from uvms_observer.navigation.correction import correct
 from uvms_observer.navigation.inertial.installation import rate_variance
 from uvms_observer.navigation.measurements.base import Linear, Measurement
-from uvms_observer.navigation.measurements.noise import MOST, as_white, most_alike
+from uvms_observer.navigation.measurements.noise import as_white, bounded, most_alike
 from uvms_observer.navigation.navigation_config import NavigationConfig
 from uvms_observer.navigation.state import (
     CURRENT,
@@ -98,7 +98,7 @@ class DvlVelocity(Measurement):
             return 0.0
         known = self._noise**2 + (self._scale * sample.velocity) ** 2
         excess = float((stated - known).max())
-        return min(excess, MOST) if excess > 0.0 else 0.0
+        return bounded(excess)
 
     def _correct_alone(
         self, state: NavigationState, sample: DvlSample, variance: float, rate: Array, gate: float

@@ -53,11 +53,12 @@ def beyond(stated: Array, known: ByAxis) -> ByAxis:
     x, y, z = stated.item(0), stated.item(4), stated.item(8)
     if x <= known[0] and y <= known[1] and z <= known[2]:
         return NOTHING
-    return (
-        min(max(0.0, x - known[0]), MOST),
-        min(max(0.0, y - known[1]), MOST),
-        min(max(0.0, z - known[2]), MOST),
-    )
+    return bounded(x - known[0]), bounded(y - known[1]), bounded(z - known[2])
+
+
+def bounded(excess: float) -> float:
+    """A variance that a message states beyond what is known: from zero to `MOST`."""
+    return min(max(0.0, excess), MOST)
 
 
 def as_white(std: float, rate_hz: float) -> float:
